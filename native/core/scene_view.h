@@ -1,0 +1,79 @@
+#pragma once
+
+#include "core/ray.h"
+
+namespace komorebi {
+
+/// What a mesh's primitives are; curves and points come behind the same records.
+enum class PrimitiveKind : std::uint32_t { kTriangle = 0 };
+
+enum InstanceFlag : std::uint32_t {
+  kInstanceHoldout = 1u << 0,
+  kInstanceShadowCatcher = 1u << 1,
+};
+
+struct WideNode;       // bvh/wide_node.h
+struct TriangleBlock;  // bvh/triangle_block.h
+
+/// A named array on a mesh (UV map, colour): the table is there before the first reader.
+enum class AttributeDomain : std::uint32_t { kVertex, kCorner, kFace };
+struct AttributeView {
+  const char* name;
+  AttributeDomain domain;
+  std::uint32_t components;  ///< floats per element
+  const float* data;
+};
+
+/// Where a wide tree starts; node 0 is the root when node_count > 0.
+struct TreeView {
+  const WideNode* nodes = nullptr;
+  std::uint32_t node_count = 0;
+  std::uint32_t depth = 0;  ///< of the wide tree; bounds the traversal stack
+};
+
+/// One mesh as the tracer and the shading read it; spans into memory that Mesh owns.
+/// Local space is Blender's object space moved by the mesh's own origin (render/mesh.h).
+struct MeshView {
+  PrimitiveKind kind = PrimitiveKind::kTriangle;
+  std::uint32_t opaque = 1;         ///< 1: no leaf filter is ever needed
+  std::uint32_t triangle_count = 0;
+  std::uint32_t vertex_count = 0;
+  std::uint32_t position_sets = 1;  ///< 1 = still; n sets of vertex_count positions in time
+  const float* vtx2xyz = nullptr;             ///< [position_sets][vertex_count][3]
+  const std::uint32_t* tri2vtx = nullptr;     ///< [triangle_count][3]
+  const float* corner2normal = nullptr;       ///< [triangle_count][3][3], unit; null: all flat
+  const std::uint8_t* tri2smooth = nullptr;   ///< [triangle_count]; null: all as corner2normal says
+  const std::uint16_t* tri2material = nullptr;///< [triangle_count]; null: all slot 0
+  const AttributeView* attributes = nullptr;
+  std::uint32_t attribute_count = 0;
+  TreeView tree;
+  const TriangleBlock* blocks = nullptr;      ///< leaves of the tree point here
+};
+
+/// One instance of a mesh.  world = world_from_local · local + position
+/// and local = local_from_world · (world − position); the difference first, so that distance from
+/// the scene's origin costs no precision.
+struct InstanceView {
+  Mat3 local_from_world{1.0f};
+  Mat3 world_from_local{1.0f};
+  Vec3 position{0.0f};
+  std::uint32_t mesh = 0;
+  std::uint32_t mask = kMaskAll;      ///< RayMask bits that see it
+  std::uint32_t flags = 0;            ///< InstanceFlag bits
+  std::uint32_t object_index = 0;     ///< which Blender object it came from
+  std::uint32_t material_table = 0;   ///< first entry of its material slots
+  std::uint32_t transform_count = 1;  ///< 1 = still; n transforms in time, from first_transform
+  std::uint32_t first_transform = kNone;
+};
+
+/// A committed scene, as plain pointers and counts: what kernels get.
+struct SceneView {
+  const MeshView* meshes = nullptr;
+  std::uint32_t mesh_count = 0;
+  const InstanceView* instances = nullptr;
+  std::uint32_t instance_count = 0;
+  TreeView tree;                                      ///< over instances
+  const std::uint32_t* leaf2instance = nullptr;       ///< leaves of `tree` are ranges in here
+};
+
+}  // namespace komorebi
