@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/aabb.h"
 #include "core/ray.h"
 
 namespace komorebi {
@@ -64,6 +65,9 @@ struct InstanceView {
   std::uint32_t material_table = 0;   ///< first entry of its material slots
   std::uint32_t transform_count = 1;  ///< 1 = still; n transforms in time, from first_transform
   std::uint32_t first_transform = kNone;
+  // Filled by place_instance() (bvh/instance_tree.h) when all of the above is known:
+  Aabb world_bounds;       ///< conservative for the traced ray; empty: the instance is never hit
+  Vec3 local_error{0.0f};  ///< rounding of the way into local space, per axis, origin's part apart
 };
 
 /// A committed scene, as plain pointers and counts: what kernels get.

@@ -1,0 +1,41 @@
+#include "bvh/closest.h"
+#include "bvh/traverse.h"
+
+namespace komorebi {
+namespace {
+
+Vec3 corner(const MeshView& mesh, std::uint32_t triangle, std::uint32_t which) {
+  const float* xyz =
+      &mesh.vtx2xyz[3 * std::size_t{mesh.tri2vtx[3 * std::size_t{triangle} + which]}];
+  return Vec3(xyz[0], xyz[1], xyz[2]);
+}
+
+template <bool kAny>
+Hit test_everything(const SceneView& scene, const Ray& ray) {
+  Closest closest(ray);
+  const SlabRay world = make_world_slab(ray);
+  for (std::uint32_t index = 0; index < scene.instance_count; ++index) {
+    LocalRay local;
+    if (!enter_instance(scene.instances[index], ray, world, &local)) continue;
+    const MeshView& mesh = scene.meshes[scene.instances[index].mesh];
+    for (std::uint32_t i = 0; i < mesh.triangle_count; ++i) {
+      const Vec3 a = corner(mesh, i, 0), b = corner(mesh, i, 1), c = corner(mesh, i, 2);
+      if (is_degenerate(a, b, c)) continue;
+      const bool found = test_triangle(local, ray, index, i, a, b, c, OpaqueFilter{}, &closest);
+      if (kAny && found) return closest.hit;
+    }
+  }
+  return closest.hit;
+}
+
+}  // namespace
+
+Hit intersect_brute_force(const SceneView& scene, const Ray& ray) {
+  return test_everything<false>(scene, ray);
+}
+
+bool occluded_brute_force(const SceneView& scene, const Ray& ray) {
+  return test_everything<true>(scene, ray).valid();
+}
+
+}  // namespace komorebi

@@ -1,0 +1,129 @@
+#include "bvh/collapse.h"
+
+#include <algorithm>
+
+namespace komorebi {
+namespace {
+
+/// What one wide node will hold, before its children's places are known.
+struct Children {
+  std::uint32_t node[kWidth];  ///< topology node, or kLeafBit | position
+  std::uint32_t count = 0;
+  std::uint32_t inner = 0;  ///< how many become wide nodes of their own
+};
+
+class Collapser {
+ public:
+  Collapser(const Topology& topology, std::span<const Aabb> boxes, std::uint32_t leaf_size)
+      : topology_(topology), boxes_(boxes), leaf_size_(leaf_size) {}
+
+  bool is_leaf(std::uint32_t node) const { return range(node).count <= leaf_size_; }
+
+  LeafRange range(std::uint32_t node) const {
+    if (node & kLeafBit) return {node & ~kLeafBit, 1};
+    return {topology_.first[node], topology_.last[node] - topology_.first[node] + 1};
+  }
+
+  const Aabb& box(std::uint32_t node) const {
+    return node & kLeafBit ? boxes_[topology_.order[node & ~kLeafBit]] : topology_.bounds[node];
+  }
+
+  /// The children of the wide node that stands for `node`.
+  Children children(std::uint32_t node) const {
+    Children result;
+    result.node[result.count++] = node;
+    float area[kWidth] = {half_area(box(node))};
+    while (result.count < kWidth) {
+      int largest = -1;
+      for (std::uint32_t i = 0; i < result.count; ++i) {
+        if (is_leaf(result.node[i])) continue;
+        if (largest < 0 || area[i] > area[largest]) largest = static_cast<int>(i);
+      }
+      if (largest < 0) break;
+      const std::uint32_t opened = result.node[largest];
+      const std::uint32_t right = topology_.right[opened];
+      result.node[largest] = topology_.left[opened];
+      area[largest] = half_area(box(result.node[largest]));
+      result.node[result.count] = right;
+      area[result.count++] = half_area(box(right));
+    }
+    for (std::uint32_t i = 0; i < result.count; ++i)
+      result.inner += is_leaf(result.node[i]) ? 0u : 1u;
+    return result;
+  }
+
+ private:
+  const Topology& topology_;
+  std::span<const Aabb> boxes_;
+  std::uint32_t leaf_size_;
+};
+
+}  // namespace
+
+WideTree collapse(const Topology& topology, std::span<const Aabb> boxes, std::uint32_t leaf_size,
+                  ThreadPool& pool, const Cancel& cancel) {
+  WideTree tree;
+  if (topology.root == kNone) return tree;
+  const Collapser collapser(topology, boxes, leaf_size);
+  constexpr std::size_t kGrain = 256;
+
+  // Level by level: decide all nodes' children, count them, and then every place is known.
+  std::vector<std::uint32_t> level{topology.root}, next;
+  std::vector<Children> decided;
+  std::vector<std::uint32_t> first_inner, first_leaf;
+  while (!level.empty()) {
+    ++tree.depth;
+    const std::size_t count = level.size();
+    decided.resize(count);
+    pool.for_each_chunk(count, kGrain, [&](std::size_t begin, std::size_t end) {
+      if (cancel.raised()) return;
+      for (std::size_t i = begin; i < end; ++i) decided[i] = collapser.children(level[i]);
+    });
+    check(cancel);
+
+    first_inner.resize(count);
+    first_leaf.resize(count);
+    std::uint32_t inner = 0;
+    auto leaf = static_cast<std::uint32_t>(tree.leaves.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      first_inner[i] = inner;
+      first_leaf[i] = leaf;
+      inner += decided[i].inner;
+      leaf += decided[i].count - decided[i].inner;
+    }
+    const std::size_t base = tree.nodes.size();
+    tree.nodes.resize(base + count);
+    tree.leaves.resize(leaf);
+    next.resize(inner);
+
+    pool.for_each_chunk(count, kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        WideNode& wide = tree.nodes[base + i];
+        std::uint32_t to_inner = first_inner[i];
+        std::uint32_t to_leaf = first_leaf[i];
+        for (int k = 0; k < kWidth; ++k) {
+          wide.child[k] = 0;
+          wide.count[k] = 0;
+          if (static_cast<std::uint32_t>(k) >= decided[i].count) {
+            wide.set_box(k, Aabb{});
+            continue;
+          }
+          const std::uint32_t node = decided[i].node[k];
+          wide.set_box(k, collapser.box(node));
+          if (collapser.is_leaf(node)) {
+            tree.leaves[to_leaf] = collapser.range(node);
+            wide.count[k] = tree.leaves[to_leaf].count;
+            wide.child[k] = to_leaf++;
+          } else {
+            wide.child[k] = static_cast<std::uint32_t>(base + count) + to_inner;
+            next[to_inner++] = node;
+          }
+        }
+      }
+    });
+    level.swap(next);
+  }
+  return tree;
+}
+
+}  // namespace komorebi

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bvh/topology.h"
+#include "bvh/wide_node.h"
+
+namespace komorebi {
+
+/// A run of positions in Topology::order.
+struct LeafRange {
+  std::uint32_t first;
+  std::uint32_t count;
+};
+
+/// Wide nodes in breadth-first order (node 0 is the root, siblings are neighbours). A leaf child's
+/// `child` is an index into `leaves`, its `count` the items in it.
+struct WideTree {
+  std::vector<WideNode> nodes;
+  std::vector<LeafRange> leaves;
+  std::uint32_t depth = 0;  ///< wide nodes on the longest way down, at most kMaxDepth
+};
+
+/// Eight children for two: opens, again and again, the inner child with the largest surface, for
+/// that is the one a random ray visits most (Wald, Benthin, Boulos 2008). Subtrees of up to
+/// `leaf_size` items become leaves. The same for any number of threads.
+WideTree collapse(const Topology& topology, std::span<const Aabb> boxes, std::uint32_t leaf_size,
+                  ThreadPool& pool, const Cancel& cancel);
+
+}  // namespace komorebi

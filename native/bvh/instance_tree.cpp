@@ -1,0 +1,83 @@
+#include "bvh/instance_tree.h"
+
+#include <cmath>
+
+#include "bvh/collapse.h"
+#include "core/local_ray.h"
+
+namespace komorebi {
+namespace {
+
+bool is_finite(double x) {
+  return x >= -double(kFloatMax) && x <= double(kFloatMax);
+}
+
+}  // namespace
+
+TreeView InstanceTree::view() const {
+  return TreeView{nodes.data(), static_cast<std::uint32_t>(nodes.size()), depth};
+}
+
+std::size_t InstanceTree::byte_count() const {
+  return nodes.capacity() * sizeof(WideNode) + leaf2instance.capacity() * sizeof(std::uint32_t);
+}
+
+Aabb instance_bounds(const InstanceView& instance, const Aabb& local_bounds) {
+  if (local_bounds.is_empty()) return Aabb{};
+  const Mat3d world_from_local = glm::inverse(Mat3d(instance.local_from_world));
+  // Centre and half extent through the inverse: |M|·extent is the extent of the image.
+  const Vec3d lo(local_bounds.lo), hi(local_bounds.hi);
+  const Vec3d middle = 0.5 * (lo + hi), extent = 0.5 * (hi - lo);
+  Aabb world;
+  for (int axis = 0; axis < 3; ++axis) {
+    double at = double(instance.position[axis]), reach = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      at += world_from_local[k][axis] * middle[k];
+      reach += std::abs(world_from_local[k][axis]) * extent[k];
+    }
+    if (!is_finite(at - reach) || !is_finite(at + reach)) return Aabb{};
+    world.lo[axis] = static_cast<float>(at - reach);
+    world.hi[axis] = static_cast<float>(at + reach);
+  }
+  return padded(world, max_abs(world) * kPadding);
+}
+
+void place_instance(InstanceView& instance, const Aabb& local_bounds) {
+  instance.world_bounds = instance_bounds(instance, local_bounds);
+  instance.local_error = Vec3(0.0f);
+  if (instance.world_bounds.is_empty()) return;
+  // The direction's error acts over the length of the ray, which up to a hit is at most the ray
+  // origin's distance from `position` (bounded per ray) and that of the hit from it (here).
+  const Aabb& box = instance.world_bounds;
+  Vec3 reach;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float p = instance.position[axis];
+    reach[axis] = max_of(std::abs(box.lo[axis] - p), std::abs(box.hi[axis] - p));
+  }
+  instance.local_error = product(absolute(instance.local_from_world), reach) * kPadding;
+}
+
+InstanceTree build_instance_tree(std::span<const Aabb> world_boxes, Builder builder,
+                                 ThreadPool& pool, const Cancel& cancel) {
+  std::vector<Aabb> boxes;
+  std::vector<std::uint32_t> source;
+  for (std::size_t i = 0; i < world_boxes.size(); ++i) {
+    if (world_boxes[i].is_empty()) continue;
+    boxes.push_back(world_boxes[i]);
+    source.push_back(static_cast<std::uint32_t>(i));
+  }
+  const Topology topology = build_topology(boxes, builder, pool, cancel);
+  WideTree wide = collapse(topology, boxes, 1, pool, cancel);
+
+  InstanceTree tree;
+  tree.nodes = std::move(wide.nodes);
+  tree.depth = wide.depth;
+  tree.leaf2instance.reserve(wide.leaves.size());
+  for (const LeafRange& leaf : wide.leaves) {
+    tree.leaf2instance.push_back(source[topology.order[leaf.first]]);
+  }
+  for (const Aabb& box : boxes) tree.bounds = united(tree.bounds, box);
+  return tree;
+}
+
+}  // namespace komorebi

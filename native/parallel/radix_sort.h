@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "parallel/cancel.h"
+#include "parallel/thread_pool.h"
+
+namespace komorebi {
+
+/// What is sorted: a key and where it came from.
+template <class Key>
+struct KeyIndex {
+  Key key;
+  std::uint32_t index;
+};
+
+/// Sorts by key, items with equal keys keeping their order: the result is the same for any number
+/// of threads. Least significant digit first, eight bits a pass; passes in which all keys agree
+/// are left out. `scratch` has the size of `items`; at most 2³² − 1 items.
+/// @throws Cancelled; `items` is then in any order.
+void radix_sort(std::span<KeyIndex<std::uint32_t>> items,
+                std::span<KeyIndex<std::uint32_t>> scratch, ThreadPool& pool, const Cancel& cancel);
+void radix_sort(std::span<KeyIndex<std::uint64_t>> items,
+                std::span<KeyIndex<std::uint64_t>> scratch, ThreadPool& pool, const Cancel& cancel);
+
+}  // namespace komorebi
