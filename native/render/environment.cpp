@@ -58,6 +58,7 @@ void Environment::clean_texels() {
       for (int c = 0; c < 3; ++c) p[c] = p[c] < 0.0f ? 0.0f : p[c];
       ++negative_texels_;
     }
+    for (int c = 0; c < 3; ++c) max_radiance_ = p[c] > max_radiance_ ? p[c] : max_radiance_;
   }
 }
 

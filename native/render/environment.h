@@ -26,6 +26,7 @@ class Environment {
   std::uint32_t height() const { return height_; }
   std::uint64_t nonfinite_texels() const { return nonfinite_texels_; }
   std::uint64_t negative_texels() const { return negative_texels_; }
+  const std::vector<float>& texels() const { return texels_; }
   float max_radiance() const { return max_radiance_; }  ///< of any channel of any texel
   std::size_t byte_count() const;
   bool black() const { return row_cdf_.empty(); }  ///< no texel shines: no tables, constant 0

@@ -1,0 +1,54 @@
+#include "cli/options.h"
+
+#include <charconv>
+#include <cstring>
+#include <stdexcept>
+
+namespace komorebi {
+namespace {
+
+std::uint32_t number(const char* option, const char* text) {
+  std::uint32_t value = 0;
+  const char* end = text + std::strlen(text);
+  const auto [stopped, error] = std::from_chars(text, end, value);
+  if (error != std::errc() || stopped != end) {
+    throw std::runtime_error(std::string(option) + " needs a whole number, not \"" + text + "\"");
+  }
+  return value;
+}
+
+}  // namespace
+
+const char* usage() {
+  return "usage: komorebi SCENE [-o FILE.exr] [--samples N] [--seed N] [--threads N]\n"
+         "Renders a scene that the add-on dumped and writes its passes into one EXR file.\n";
+}
+
+std::optional<CliOptions> parse_options(int argc, char** argv) {
+  CliOptions options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto value = [&]() -> const char* {
+      if (i + 1 == argc) throw std::runtime_error(word + " needs a value");
+      return argv[++i];
+    };
+    if (word == "-h" || word == "--help") return std::nullopt;
+    if (word == "-o" || word == "--output") {
+      options.output = value();
+    } else if (word == "--samples") {
+      options.samples = number("--samples", value());
+    } else if (word == "--seed") {
+      options.seed = number("--seed", value());
+    } else if (word == "--threads") {
+      options.threads = number("--threads", value());
+    } else if (word.starts_with("-") || !options.scene.empty()) {
+      throw std::runtime_error("\"" + word + "\" is not understood; see komorebi --help");
+    } else {
+      options.scene = word;
+    }
+  }
+  if (options.scene.empty()) throw std::runtime_error("which scene? see komorebi --help");
+  return options;
+}
+
+}  // namespace komorebi

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+
+#include "parallel/cancel.h"
+#include "parallel/thread_pool.h"
+
+namespace komorebi::python {
+
+namespace py = pybind11;
+
+// One function a part of the module, each in a file of its own.
+void bind_scene(py::module_& module);
+void bind_session(py::module_& module);
+
+/// A pool for a build: `threads` of Blender's scene, 0 for one a core. One pool is kept from call to
+/// call, because starting threads costs more than a small mesh's build.
+std::shared_ptr<ThreadPool> build_pool(unsigned threads);
+
+/// None gives a flag that nobody raises.
+const Cancel& cancel_or_never(const std::shared_ptr<Cancel>& cancel);
+
+}  // namespace komorebi::python

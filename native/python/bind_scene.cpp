@@ -1,0 +1,218 @@
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+
+#include "io/image.h"
+#include "python/arrays.h"
+#include "python/bind.h"
+#include "render/scene.h"
+
+namespace komorebi::python {
+namespace {
+
+std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& positions,
+                                      const py::object& corner_verts,
+                                      const py::object& face_offsets, const py::object& tri2corner,
+                                      const py::object& tri2face, const py::object& corner_normals,
+                                      const py::object& smooth_faces,
+                                      const py::object& face_materials, const std::string& builder,
+                                      unsigned threads, const std::shared_ptr<Cancel>& cancel) {
+  const std::string mesh = "mesh \"" + name + "\": ";
+  MeshInput input;
+  input.name = name;
+  input.vtx2xyz = view<float>(positions, mesh + "positions", {-1, 3});
+  input.corner2vtx = view<std::int32_t>(corner_verts, mesh + "corner_verts", {-1});
+  input.face_offsets = view<std::int32_t>(face_offsets, mesh + "face_offsets", {-1});
+  input.tri2corner = optional_view<std::int32_t>(tri2corner, mesh + "tri2corner", {-1, 3});
+  input.tri2face = optional_view<std::int32_t>(tri2face, mesh + "tri2face", {-1});
+  input.corner2normal = optional_view<float>(corner_normals, mesh + "corner_normals", {-1, 3});
+  const auto smooth = optional_view<bool>(smooth_faces, mesh + "smooth_faces", {-1});
+  input.face2smooth = {reinterpret_cast<const std::uint8_t*>(smooth.data()), smooth.size()};
+  input.face2material = optional_view<std::int32_t>(face_materials, mesh + "face_materials", {-1});
+  const Builder kind = builder_from_name(builder);
+  const py::gil_scoped_release release;
+  // Python has no const; nothing that is bound below changes a mesh.
+  return std::const_pointer_cast<Mesh>(
+      Mesh::build(input, kind, *build_pool(threads), cancel_or_never(cancel)));
+}
+
+py::array_t<std::int32_t> mesh_tri2corner(const Mesh& mesh) {
+  const auto& corners = mesh.tri2corner();
+  py::array_t<std::int32_t> out({static_cast<py::ssize_t>(corners.size() / 3), py::ssize_t{3}});
+  std::copy(corners.begin(), corners.end(), out.mutable_data());
+  return out;
+}
+
+std::shared_ptr<Environment> environment_from_file(const std::string& path,
+                                                   const std::string& color_space) {
+  if (color_space != "LINEAR" && color_space != "SRGB") {
+    throw std::invalid_argument("color_space must be LINEAR or SRGB, not " + color_space);
+  }
+  const py::gil_scoped_release release;
+  Image image =
+      read_image(path, color_space == "SRGB" ? ColorSpace::kSrgb : ColorSpace::kLinear);
+  return std::make_shared<Environment>(path, image.width, image.height, std::move(image.pixels));
+}
+
+std::shared_ptr<Environment> environment_from_pixels(const std::string& name,
+                                                     const py::array& pixels) {
+  const auto values = view<float>(pixels, "image \"" + name + "\": pixels", {-1, -1, 3});
+  const auto height = static_cast<std::uint32_t>(pixels.shape(0));
+  const auto width = static_cast<std::uint32_t>(pixels.shape(1));
+  const py::gil_scoped_release release;
+  return std::make_shared<Environment>(name, width, height,
+                                       std::vector<float>(values.begin(), values.end()));
+}
+
+/// NumPy's row-major matrix as GLM's column-major one.
+template <class T>
+Mat4d matrix4(const T* rows) {
+  Mat4d m;
+  for (int r = 0; r < 4; ++r) {
+    for (int c = 0; c < 4; ++c) m[c][r] = static_cast<double>(rows[4 * r + c]);
+  }
+  return m;
+}
+
+void add_instances(Scene& scene, std::uint32_t mesh, const py::array& matrices,
+                   const py::object& object_index, const py::object& mask, const py::object& flags,
+                   const std::string& name) {
+  const std::string what = "instances of \"" + name + "\": ";
+  const py::ssize_t n = matrices.ndim() > 0 ? matrices.shape(0) : 0;
+  const auto objects = view<std::uint32_t>(object_index, what + "object_index", {n});
+  const auto masks = optional_view<std::uint32_t>(mask, what + "mask", {n});
+  const auto flag_values = optional_view<std::uint32_t>(flags, what + "flags", {n});
+  std::vector<InstanceInput> instances(static_cast<std::size_t>(n));
+  const auto fill = [&](const auto& values) {
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+      instances[i] = {mesh, matrix4(&values[16 * i]), objects[i],
+                      masks.empty() ? kMaskAll : masks[i],
+                      flag_values.empty() ? 0u : flag_values[i]};
+    }
+  };
+  if (py::isinstance<py::array_t<float>>(matrices)) {
+    fill(view<float>(matrices, what + "matrices", {-1, 4, 4}));
+  } else {
+    fill(view<double>(matrices, what + "matrices", {-1, 4, 4}));
+  }
+  const py::gil_scoped_release release;
+  scene.add_instances(instances, name);
+}
+
+void set_camera(Scene& scene, const std::string& kind, const py::object& clip_from_world,
+                double clip_start, double clip_end, std::uint32_t width, std::uint32_t height) {
+  CameraDesc camera;
+  if (kind == "ORTHOGRAPHIC") {
+    camera.kind = CameraKind::kOrthographic;
+  } else if (kind != "PERSPECTIVE") {
+    throw std::invalid_argument("camera kind must be PERSPECTIVE or ORTHOGRAPHIC, not " + kind);
+  }
+  camera.clip_from_world = matrix4(view<double>(clip_from_world, "clip_from_world", {4, 4}).data());
+  camera.clip_start = clip_start;
+  camera.clip_end = clip_end;
+  camera.width = width;
+  camera.height = height;
+  scene.set_camera(camera);
+}
+
+void set_world_environment(Scene& scene, std::shared_ptr<const Environment> environment,
+                           double strength, const py::object& texture_from_world) {
+  Mat3d rotation(1.0);
+  if (!texture_from_world.is_none()) {
+    const auto rows = view<double>(texture_from_world, "texture_from_world", {3, 3});
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) rotation[c][r] = rows[static_cast<std::size_t>(3 * r + c)];
+    }
+  }
+  scene.set_world_environment(std::move(environment), strength, rotation);
+}
+
+void commit(Scene& scene, unsigned threads, const std::shared_ptr<Cancel>& cancel) {
+  const py::gil_scoped_release release;
+  scene.commit(*build_pool(threads), cancel_or_never(cancel));
+}
+
+void bind_mesh(py::module_& module) {
+  py::class_<Mesh, std::shared_ptr<Mesh>>(
+      module, "Mesh",
+      "A triangle mesh with its tree; immutable, shared by as many scenes as hold it.")
+      .def(py::init(&make_mesh),
+           R"(Copies a polygon mesh into the tracer's layout and builds its tree; releases the GIL.
+
+name: for messages. positions: float32 [V, 3], object space, metres. corner_verts: int32 [C].
+face_offsets: int32 [F + 1], first corner of each face. tri2corner int32 [T, 3] and tri2face
+int32 [T]: Blender's loop triangles; None if every face has three or four corners.
+corner_normals: float32 [C, 3], unit; None if every face is flat. smooth_faces: bool [F], None if
+all are smooth. face_materials: int32 [F]. builder: LINEAR, PRINCIPAL_AXIS or LIST.
+Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
+           py::arg("name"), py::arg("positions"), py::arg("corner_verts"), py::arg("face_offsets"),
+           py::kw_only(), py::arg("tri2corner") = py::none(), py::arg("tri2face") = py::none(),
+           py::arg("corner_normals") = py::none(), py::arg("smooth_faces") = py::none(),
+           py::arg("face_materials") = py::none(), py::arg("builder") = "LINEAR",
+           py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>())
+      .def_property_readonly("name", &Mesh::name)
+      .def_property_readonly("triangle_count", &Mesh::triangle_count)
+      .def_property_readonly("vertex_count", &Mesh::vertex_count)
+      .def_property_readonly("degenerate_count", &Mesh::degenerate_count)
+      .def_property_readonly("byte_count", &Mesh::byte_count)
+      .def_property_readonly("node_count", [](const Mesh& m) { return m.tree().nodes.size(); })
+      .def_property_readonly("depth", [](const Mesh& m) { return m.tree().depth; })
+      .def("tri2corner", &mesh_tri2corner, "Corners of each triangle, int32 [T, 3].");
+}
+
+void bind_environment(py::module_& module) {
+  py::class_<Environment, std::shared_ptr<Environment>>(
+      module, "Environment", "An equirectangular map with its sampling tables; immutable.")
+      .def_static("from_file", &environment_from_file, py::arg("path"),
+                  py::arg("color_space") = "LINEAR",
+                  "Reads any image that OpenImageIO can; RuntimeError naming the file.")
+      .def_static("from_pixels", &environment_from_pixels, py::arg("name"), py::arg("pixels"),
+                  "float32 [H, W, 3], linear Rec. 709, row 0 at the bottom.")
+      .def_property_readonly("width", &Environment::width)
+      .def_property_readonly("height", &Environment::height)
+      .def_property_readonly("nonfinite_texels", &Environment::nonfinite_texels)
+      .def_property_readonly("negative_texels", &Environment::negative_texels)
+      .def_property_readonly("byte_count", &Environment::byte_count);
+}
+
+}  // namespace
+
+void bind_scene(py::module_& module) {
+  bind_mesh(module);
+  bind_environment(module);
+  py::class_<Scene, std::shared_ptr<Scene>>(
+      module, "Scene", "Meshes, instances, world and camera: filled, then committed once.")
+      .def(py::init<>())
+      .def(
+          "add_mesh",
+          [](Scene& scene, std::shared_ptr<Mesh> mesh) { return scene.add_mesh(std::move(mesh)); },
+          py::arg("mesh"), "Returns the mesh's index in this scene.")
+      .def("add_instances", &add_instances, py::arg("mesh"), py::arg("matrices"),
+           py::arg("object_index"), py::kw_only(), py::arg("mask") = py::none(),
+           py::arg("flags") = py::none(), py::arg("name") = "",
+           "matrices: world from object, float64 or float32 [N, 4, 4], M @ p; object_index, mask, "
+           "flags: uint32 [N].")
+      .def(
+          "set_world_color",
+          [](Scene& scene, const std::array<float, 3>& c) {
+            scene.set_world_color(Vec3(c[0], c[1], c[2]));
+          },
+          py::arg("rgb"), "Uniform radiance, strength included, linear Rec. 709.")
+      .def("set_world_environment", &set_world_environment, py::arg("environment"),
+           py::arg("strength") = 1.0, py::arg("texture_from_world") = py::none(),
+           "texture_from_world: rotation, float64 [3, 3].")
+      .def("set_camera", &set_camera, py::arg("kind"), py::arg("clip_from_world"),
+           py::arg("clip_start"), py::arg("clip_end"), py::arg("width"), py::arg("height"),
+           "kind: PERSPECTIVE or ORTHOGRAPHIC. clip_from_world: projection @ view, float64 [4, 4]. "
+           "Clip distances in metres, width and height of the full frame in pixels.")
+      .def("commit", &commit, py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
+           "Builds the tree over instances; the scene is read only from here on.")
+      .def_property_readonly("triangle_count", &Scene::triangle_count)
+      .def_property_readonly("instance_count", &Scene::instance_count)
+      .def_property_readonly("invisible_count", &Scene::invisible_count)
+      .def_property_readonly("mesh_count", [](const Scene& s) { return s.meshes().size(); })
+      .def_property_readonly("byte_count", &Scene::byte_count);
+}
+
+}  // namespace komorebi::python

@@ -1,0 +1,182 @@
+#include <pybind11/stl.h>
+
+#include <array>
+#include <optional>
+
+#include "python/arrays.h"
+#include "python/bind.h"
+#include "render/dump.h"
+#include "render/session.h"
+
+namespace komorebi::python {
+namespace {
+
+template <class Enum>
+struct Choice {
+  const char* name;
+  Enum value;
+};
+
+constexpr Choice<Method> kMethods[] = {{"AMBIENT_OCCLUSION", Method::kAmbientOcclusion},
+                                       {"WORLD_LIGHT", Method::kWorldLight}};
+constexpr Choice<AoSampling> kAoSamplings[] = {{"COSINE", AoSampling::kCosine},
+                                               {"UNIFORM", AoSampling::kUniform}};
+constexpr Choice<EnvironmentSampling> kEnvironmentSamplings[] = {
+    {"MIS", EnvironmentSampling::kMis},
+    {"COSINE", EnvironmentSampling::kCosine},
+    {"ENVIRONMENT", EnvironmentSampling::kEnvironment}};
+constexpr Choice<PixelFilter> kPixelFilters[] = {
+    {"BLACKMAN_HARRIS", PixelFilter::kBlackmanHarris},
+    {"GAUSSIAN", PixelFilter::kGaussian},
+    {"BOX", PixelFilter::kBox}};
+
+template <class Enum, std::size_t N>
+Enum parse(const char* setting, const std::string& name, const Choice<Enum> (&choices)[N]) {
+  std::string known;
+  for (const auto& choice : choices) {
+    if (name == choice.name) return choice.value;
+    known += (known.empty() ? "" : ", ") + std::string(choice.name);
+  }
+  throw std::invalid_argument(std::string(setting) + " must be one of " + known + ", not " + name);
+}
+
+using Region = std::array<std::uint32_t, 4>;
+
+std::shared_ptr<Settings> make_settings(
+    const std::string& method, std::uint32_t samples, std::uint32_t light_samples,
+    std::uint32_t sample_offset, std::uint32_t seed, float ao_distance,
+    const std::string& ao_sampling, const std::array<float, 3>& clay_color,
+    const std::string& environment_sampling, const std::string& pixel_filter, float filter_width,
+    bool use_progressive, bool film_transparent, std::uint32_t threads, std::uint32_t tile_size,
+    const std::optional<Region>& region, const std::vector<std::string>& passes) {
+  auto s = std::make_shared<Settings>();
+  s->method = parse("method", method, kMethods);
+  s->samples = samples;
+  s->light_samples = light_samples;
+  s->sample_offset = sample_offset;
+  s->seed = seed;
+  s->ao_distance = ao_distance;
+  s->ao_sampling = parse("ao_sampling", ao_sampling, kAoSamplings);
+  s->clay_color = Vec3(clay_color[0], clay_color[1], clay_color[2]);
+  s->environment_sampling =
+      parse("environment_sampling", environment_sampling, kEnvironmentSamplings);
+  s->pixel_filter = parse("pixel_filter", pixel_filter, kPixelFilters);
+  s->filter_width = filter_width;
+  s->use_progressive = use_progressive;
+  s->film_transparent = film_transparent;
+  s->threads = threads;
+  s->tile_size = tile_size;
+  s->has_region = region.has_value();
+  if (region) s->region = {(*region)[0], (*region)[1], (*region)[2], (*region)[3]};
+  s->passes = passes;
+  return s;
+}
+
+/// Rectangles go in and out of Python relative to the rendered region, as Blender's results are.
+using PyRect = std::array<std::uint32_t, 4>;  // x, y, width, height
+
+std::vector<PyRect> updated_tiles(Session& session) {
+  const Rect& region = session.settings().region;
+  std::vector<PyRect> tiles;
+  for (const Rect& t : session.updated_tiles()) {
+    tiles.push_back({t.x_min - region.x_min, t.y_min - region.y_min, t.width(), t.height()});
+  }
+  return tiles;
+}
+
+py::array_t<float> read(const Session& session, const std::string& pass, std::uint32_t x,
+                        std::uint32_t y, const std::optional<std::uint32_t>& width,
+                        const std::optional<std::uint32_t>& height) {
+  const Rect& region = session.settings().region;
+  if (x > region.width() || y > region.height()) {
+    throw std::invalid_argument("the rectangle to read lies outside the film");
+  }
+  const std::uint32_t w = width.value_or(region.width() - x);
+  const std::uint32_t h = height.value_or(region.height() - y);
+  if (w > region.width() - x || h > region.height() - y) {
+    throw std::invalid_argument("the rectangle to read lies outside the film");
+  }
+  const Rect rect{region.x_min + x, region.y_min + y, region.x_min + x + w, region.y_min + y + h};
+  py::array_t<float> out({py::ssize_t{h}, py::ssize_t{w}, py::ssize_t{Film::pass(pass).channels}});
+  float* data = out.mutable_data();
+  const py::gil_scoped_release release;
+  session.film().read(pass, rect, data);
+  return out;
+}
+
+py::dict progress(const Session& session) {
+  const Progress p = session.progress();
+  py::dict d;
+  d["sample"] = p.sample;
+  d["samples"] = p.samples;
+  d["fraction"] = p.fraction;
+  d["elapsed"] = p.elapsed;
+  d["remaining"] = p.remaining;
+  d["rays"] = p.rays;
+  d["clamped_samples"] = p.clamped_samples;
+  return d;
+}
+
+std::optional<std::string> error(const Session& session) {
+  const std::string message = session.error();
+  return message.empty() ? std::nullopt : std::optional(message);
+}
+
+void bind_settings(py::module_& module) {
+  const Settings d;
+  py::class_<Settings, std::shared_ptr<Settings>>(
+      module, "Settings", "How to render; names and defaults are those of scene.komorebi.")
+      .def(py::init(&make_settings), py::kw_only(), py::arg("method") = "AMBIENT_OCCLUSION",
+           py::arg("samples") = d.samples, py::arg("light_samples") = d.light_samples,
+           py::arg("sample_offset") = d.sample_offset, py::arg("seed") = d.seed,
+           py::arg("ao_distance") = d.ao_distance, py::arg("ao_sampling") = "COSINE",
+           py::arg("clay_color") = std::array<float, 3>{0.8f, 0.8f, 0.8f},
+           py::arg("environment_sampling") = "MIS", py::arg("pixel_filter") = "BLACKMAN_HARRIS",
+           py::arg("filter_width") = d.filter_width, py::arg("use_progressive") = d.use_progressive,
+           py::arg("film_transparent") = d.film_transparent, py::arg("threads") = d.threads,
+           py::arg("tile_size") = d.tile_size, py::arg("region") = std::optional<Region>(),
+           py::arg("passes") = d.passes,
+           "region: (x_min, y_min, x_max, y_max) in full-frame pixels, half open, row 0 at the "
+           "bottom; None is the whole frame. threads 0: one a core. ValueError for a name that is "
+           "not known; ranges are checked when a Session starts.");
+}
+
+}  // namespace
+
+void bind_session(py::module_& module) {
+  bind_settings(module);
+  py::class_<Session, std::shared_ptr<Session>>(
+      module, "Session", "Renders a committed scene on threads of its own; it starts at once.")
+      .def(py::init([](std::shared_ptr<Scene> scene, const Settings& settings) {
+             const py::gil_scoped_release release;
+             return new Session(std::move(scene), settings);
+           }),
+           py::arg("scene"), py::arg("settings"),
+           "ValueError: the scene is not committed or has no camera, a setting is out of range.")
+      .def("wait", &Session::wait, py::arg("timeout"), py::call_guard<py::gil_scoped_release>(),
+           "True when the render is over (done, cancelled or failed) within `timeout` seconds.")
+      .def("cancel", &Session::cancel, "Ends the render within 100 ms; what is done stays.")
+      .def("resume", &Session::resume, py::call_guard<py::gil_scoped_release>(),
+           "Goes on after a cancel with what is missing.")
+      .def("updated_tiles", &updated_tiles,
+           "(x, y, width, height) of tiles changed since the last call, within the region.")
+      .def("progress", &progress)
+      .def("read", &read, py::arg("pass_name"), py::arg("x") = 0, py::arg("y") = 0,
+           py::arg("width") = py::none(), py::arg("height") = py::none(),
+           "A pass as float32 [height, width, channels], row 0 at the bottom: Combined 4 "
+           "(premultiplied, scene linear), Depth 1, Normal 3.")
+      .def_property_readonly("error", &error)
+      .def_property_readonly("byte_count", &Session::byte_count);
+  auto scene = py::reinterpret_borrow<py::class_<Scene, std::shared_ptr<Scene>>>(
+      module.attr("Scene"));
+  scene.def(
+      "dump",
+      [](const Scene& self, const std::string& path, const Settings& settings) {
+        const py::gil_scoped_release release;
+        write_dump(path, self, settings);
+      },
+      py::arg("path"), py::arg("settings"),
+      "Writes the scene and how to render it into one file for the program `komorebi`.");
+}
+
+}  // namespace komorebi::python

@@ -1,0 +1,33 @@
+"""Komorebi's native core: scenes in, pictures out.
+
+Data goes in as NumPy arrays, read in place and copied once; pictures come out as NumPy arrays that
+own their memory. Long calls release the GIL. Nothing here knows about Blender.
+"""
+
+from ._komorebi import (
+    Cancel,
+    Cancelled,
+    Environment,
+    Mesh,
+    Scene,
+    Session,
+    Settings,
+    __version__,
+    build_info,
+    force_instruction_set,
+    known_passes,
+)
+
+__all__ = [
+    "Cancel",
+    "Cancelled",
+    "Environment",
+    "Mesh",
+    "Scene",
+    "Session",
+    "Settings",
+    "__version__",
+    "build_info",
+    "force_instruction_set",
+    "known_passes",
+]

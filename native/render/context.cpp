@@ -1,0 +1,38 @@
+#include "render/context.h"
+
+namespace komorebi {
+namespace {
+
+/// A uniform sky has no direction worth choosing, so multiple importance sampling keeps to the
+/// cosine there; asked for alone, the environment's own (uniform) density is used as asked.
+float cosine_share(EnvironmentSampling sampling, bool uniform_world) {
+  switch (sampling) {
+    case EnvironmentSampling::kCosine: return 1.0f;
+    case EnvironmentSampling::kEnvironment: return 0.0f;
+    case EnvironmentSampling::kMis: return uniform_world ? 1.0f : 0.5f;
+  }
+  return 1.0f;
+}
+
+}  // namespace
+
+RenderContext make_context(const Scene& scene, const Settings& settings,
+                           const FilterView& filter) {
+  const bool ao = settings.method == Method::kAmbientOcclusion;
+  RenderContext context;
+  context.scene = scene.view();
+  context.camera = scene.camera();
+  context.environment = scene.environment();
+  context.filter = filter;
+  context.method = settings.method;
+  context.ao_sampling = settings.ao_sampling;
+  context.albedo = ao ? Vec3(1.0f) : settings.clay_color;
+  context.light_distance = ao && settings.ao_distance > 0.0f ? settings.ao_distance : Ray{}.t_max;
+  context.cosine_share = cosine_share(settings.environment_sampling, scene.world_is_uniform());
+  context.transparent = settings.film_transparent;
+  context.seed = settings.seed;
+  context.light_samples = settings.light_samples;
+  return context;
+}
+
+}  // namespace komorebi

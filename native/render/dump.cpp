@@ -1,0 +1,185 @@
+#include "render/dump.h"
+
+#include <algorithm>
+#include <glm/gtc/type_ptr.hpp>
+
+#include "io/array_file.h"
+
+namespace komorebi {
+namespace {
+
+template <class T>
+void put_rows(ArrayFile& file, const std::string& name, std::span<const T> values,
+              std::uint64_t columns) {
+  file.put<T>(name, values, {values.size() / columns, columns});
+}
+
+template <class T>
+std::span<const T> span_of(const T* data, std::size_t size) {
+  return data ? std::span<const T>(data, size) : std::span<const T>();
+}
+
+void put_mesh(ArrayFile& file, const std::string& key, const Mesh& mesh) {
+  const MeshView v = mesh.view();
+  const std::size_t triangles = v.triangle_count;
+  file.put_text(key + "name", mesh.name());
+  file.put<double>(key + "origin", span_of(glm::value_ptr(mesh.origin()), 3), {3});
+  put_rows<float>(file, key + "vtx2xyz", span_of(v.vtx2xyz, 3 * std::size_t{v.vertex_count}), 3);
+  put_rows<std::uint32_t>(file, key + "tri2vtx", span_of(v.tri2vtx, 3 * triangles), 3);
+  if (v.corner2normal) {
+    file.put<float>(key + "corner2normal", span_of(v.corner2normal, 9 * triangles),
+                    {triangles, 3, 3});
+  }
+  if (v.tri2smooth) {
+    file.put<std::uint8_t>(key + "tri2smooth", span_of(v.tri2smooth, triangles), {triangles});
+  }
+  if (v.tri2material) {
+    std::vector<std::int32_t> slots(v.tri2material, v.tri2material + triangles);
+    file.put<std::int32_t>(key + "tri2material", slots, {triangles});
+  }
+}
+
+/// Back through the same door as a host's meshes, so that a damaged file is refused as they are.
+std::shared_ptr<const Mesh> get_mesh(const ArrayFile& file, const std::string& key,
+                                     ThreadPool& pool, const Cancel& cancel) {
+  const auto origin = file.get<double>(key + "origin", 3);
+  auto vtx2xyz = file.get<float>(key + "vtx2xyz");
+  for (std::size_t i = 0; i < vtx2xyz.size(); ++i) {
+    vtx2xyz[i] = static_cast<float>(double{vtx2xyz[i]} + origin[i % 3]);  // exact, see Mesh
+  }
+  const auto tri2vtx = file.get<std::uint32_t>(key + "tri2vtx");
+  const std::vector<std::int32_t> corner2vtx(tri2vtx.begin(), tri2vtx.end());
+  std::vector<std::int32_t> face_offsets(tri2vtx.size() / 3 + 1);
+  for (std::size_t f = 0; f < face_offsets.size(); ++f) {
+    face_offsets[f] = static_cast<std::int32_t>(3 * f);
+  }
+  std::vector<float> normals;
+  std::vector<std::uint8_t> smooth;
+  std::vector<std::int32_t> materials;
+  if (file.has(key + "corner2normal")) normals = file.get<float>(key + "corner2normal");
+  if (file.has(key + "tri2smooth")) smooth = file.get<std::uint8_t>(key + "tri2smooth");
+  if (file.has(key + "tri2material")) materials = file.get<std::int32_t>(key + "tri2material");
+
+  MeshInput input;
+  input.name = file.get_text(key + "name");
+  input.vtx2xyz = vtx2xyz;
+  input.corner2vtx = corner2vtx;
+  input.face_offsets = face_offsets;
+  input.corner2normal = normals;
+  input.face2smooth = smooth;
+  input.face2material = materials;
+  return Mesh::build(input, Builder::kLinear, pool, cancel);
+}
+
+void put_instances(ArrayFile& file, const std::vector<InstanceInput>& instances) {
+  const std::size_t n = instances.size();
+  std::vector<std::uint32_t> mesh(n), object(n), mask(n), flags(n);
+  std::vector<double> matrices(16 * n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const InstanceInput& instance = instances[i];
+    mesh[i] = instance.mesh;
+    object[i] = instance.object_index;
+    mask[i] = instance.mask;
+    flags[i] = instance.flags;
+    std::copy_n(glm::value_ptr(instance.world_from_object), 16, &matrices[16 * i]);
+  }
+  file.put<std::uint32_t>("instance/mesh", mesh, {n});
+  file.put<std::uint32_t>("instance/object_index", object, {n});
+  file.put<std::uint32_t>("instance/mask", mask, {n});
+  file.put<std::uint32_t>("instance/flags", flags, {n});
+  file.put<double>("instance/world_from_object", matrices, {n, 4, 4});
+}
+
+void get_instances(const ArrayFile& file, Scene& scene) {
+  const auto mesh = file.get<std::uint32_t>("instance/mesh");
+  const std::size_t n = mesh.size();
+  const auto object = file.get<std::uint32_t>("instance/object_index", n);
+  const auto mask = file.get<std::uint32_t>("instance/mask", n);
+  const auto flags = file.get<std::uint32_t>("instance/flags", n);
+  const auto matrices = file.get<double>("instance/world_from_object", 16 * n);
+  std::vector<InstanceInput> instances(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    instances[i] = {mesh[i], glm::make_mat4(&matrices[16 * i]), object[i], mask[i], flags[i]};
+  }
+  scene.add_instances(instances, "scene file");
+}
+
+void put_world(ArrayFile& file, const Scene& scene) {
+  const auto& environment = scene.world_environment();
+  if (!environment) {
+    file.put<float>("world/color", span_of(glm::value_ptr(scene.world_color()), 3), {3});
+    return;
+  }
+  const std::uint64_t width = environment->width(), height = environment->height();
+  file.put_text("world/name", environment->name());
+  file.put<float>("world/texels", environment->texels(), {height, width, 3});
+  file.put_value<double>("world/strength", scene.world_strength());
+  file.put<double>("world/texture_from_world",
+                   span_of(glm::value_ptr(scene.texture_from_world()), 9), {3, 3});
+}
+
+void get_world(const ArrayFile& file, Scene& scene) {
+  if (file.has("world/color")) {
+    scene.set_world_color(glm::make_vec3(file.get<float>("world/color", 3).data()));
+    return;
+  }
+  const auto& shape = file.array("world/texels").shape;
+  if (shape.size() != 3 || shape[2] != 3 || shape[0] > 1u << 20 || shape[1] > 1u << 20) {
+    throw std::runtime_error("the scene's array \"world/texels\" has a wrong shape");
+  }
+  auto environment = std::make_shared<Environment>(
+      file.get_text("world/name"), static_cast<std::uint32_t>(shape[1]),
+      static_cast<std::uint32_t>(shape[0]), file.get<float>("world/texels"));
+  scene.set_world_environment(
+      std::move(environment), file.get_value<double>("world/strength"),
+      glm::make_mat3(file.get<double>("world/texture_from_world", 9).data()));
+}
+
+}  // namespace
+
+void write_dump(const std::string& path, const Scene& scene, const Settings& settings) {
+  ArrayFile file;
+  file.put_value<std::uint32_t>("mesh/count", static_cast<std::uint32_t>(scene.meshes().size()));
+  for (std::size_t m = 0; m < scene.meshes().size(); ++m) {
+    put_mesh(file, "mesh/" + std::to_string(m) + "/", *scene.meshes()[m]);
+  }
+  put_instances(file, scene.inputs());
+  put_world(file, scene);
+  const CameraDesc& camera = scene.camera_desc();
+  const std::uint32_t resolution[2] = {camera.width, camera.height};
+  file.put_value<std::uint32_t>("camera/kind", static_cast<std::uint32_t>(camera.kind));
+  file.put<double>("camera/clip_from_world", span_of(glm::value_ptr(camera.clip_from_world), 16),
+                   {4, 4});
+  file.put_value<double>("camera/clip_start", camera.clip_start);
+  file.put_value<double>("camera/clip_end", camera.clip_end);
+  file.put<std::uint32_t>("camera/resolution", resolution, {2});
+  put_settings(file, settings);
+  file.write(path);
+}
+
+DumpedRender read_dump(const std::string& path, ThreadPool& pool, const Cancel& cancel) {
+  const ArrayFile file = ArrayFile::read(path);
+  DumpedRender dumped;
+  dumped.scene = std::make_shared<Scene>();
+  const auto meshes = file.get_value<std::uint32_t>("mesh/count");
+  for (std::uint32_t m = 0; m < meshes; ++m) {
+    dumped.scene->add_mesh(get_mesh(file, "mesh/" + std::to_string(m) + "/", pool, cancel));
+  }
+  get_instances(file, *dumped.scene);
+  get_world(file, *dumped.scene);
+  CameraDesc camera;
+  const auto kind = file.get_value<std::uint32_t>("camera/kind");
+  if (kind > 1) throw std::runtime_error("the scene's camera is of an unknown kind");
+  camera.kind = static_cast<CameraKind>(kind);
+  camera.clip_from_world = glm::make_mat4(file.get<double>("camera/clip_from_world", 16).data());
+  camera.clip_start = file.get_value<double>("camera/clip_start");
+  camera.clip_end = file.get_value<double>("camera/clip_end");
+  const auto resolution = file.get<std::uint32_t>("camera/resolution", 2);
+  camera.width = resolution[0];
+  camera.height = resolution[1];
+  dumped.scene->set_camera(camera);
+  dumped.settings = get_settings(file);
+  return dumped;
+}
+
+}  // namespace komorebi

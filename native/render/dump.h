@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "render/scene.h"
+#include "render/settings.h"
+
+namespace komorebi {
+
+/// A scene with its settings, as it comes out of a dump.
+struct DumpedRender {
+  std::shared_ptr<Scene> scene;  ///< not yet committed
+  Settings settings;
+};
+
+/// Writes everything a render needs into one file of named arrays (io/array_file.h):
+///
+///     mesh/N/name, vtx2xyz, origin, tri2vtx, corner2normal*, tri2smooth*, tri2material*
+///     instance/mesh, world_from_object, object_index, mask, flags
+///     world/color  or  world/texels, world/strength, world/texture_from_world
+///     camera/kind, clip_from_world, clip_start, clip_end, resolution
+///     settings/…   one value a setting, by its name on scene.komorebi
+///
+/// (* only where the mesh has them.) Vertices are relative to `origin`; matrices are column-major.
+/// Throws std::runtime_error naming the file.
+void write_dump(const std::string& path, const Scene& scene, const Settings& settings);
+
+/// Throws std::runtime_error or std::invalid_argument with a sentence naming what is wrong.
+DumpedRender read_dump(const std::string& path, ThreadPool& pool, const Cancel& cancel);
+
+/// The settings' part alone.
+class ArrayFile;
+void put_settings(ArrayFile& file, const Settings& settings);
+Settings get_settings(const ArrayFile& file);
+
+}  // namespace komorebi

@@ -1,0 +1,83 @@
+#include "render/light.h"
+
+#include "core/aabb.h"
+#include "core/warp.h"
+
+namespace komorebi {
+namespace {
+
+/// A radiance of f · L · cos / pdf for a Lambertian surface of the context's albedo, or null when
+/// the direction lies below the shading or the geometric surface, where Cycles has no light either.
+Vec3 lambertian(const RenderContext& context, const SurfacePoint& point, const Vec3& direction,
+                float cosine, float pdf, const Vec3& radiance) {
+  if (!(cosine > 0.0f && pdf > 0.0f)) return Vec3(0.0f);
+  if (!(glm::dot(direction, point.geometric_normal) > 0.0f)) return Vec3(0.0f);
+  return context.albedo * radiance * (kInvPi * cosine / pdf);
+}
+
+LightSample sample_ambient(const RenderContext& context, const SurfacePoint& point, const Vec2& u) {
+  const bool cosine_weighted = context.ao_sampling == AoSampling::kCosine;
+  const Vec3 local = cosine_weighted ? cosine_hemisphere_disk(u) : uniform_hemisphere(u);
+  LightSample sample;
+  sample.direction = make_frame(point.normal).to_world(local);
+  // The cosine and its density cancel; left in, their rounding would show as noise around 1.
+  const Vec3 weight = Vec3(cosine_weighted ? 1.0f : 2.0f * local.z);
+  const bool above = glm::dot(sample.direction, point.geometric_normal) > 0.0f;
+  sample.contribution = above ? weight : Vec3(0.0f);
+  return sample;
+}
+
+/// Stretches the part [first, first + count) of the 2³² values of a coordinate to all of them.
+std::uint32_t stretched(std::uint32_t bits, std::uint64_t first, std::uint64_t count) {
+  return static_cast<std::uint32_t>(((bits - first) << 32) / count);
+}
+
+/// One-sample multiple importance sampling with the balance heuristic (Veach 1997, §9.2.4): the
+/// strategy is chosen by the first coordinate, which is then stretched to its full range again, so
+/// that both strategies see well-stratified points.
+LightSample sample_sky(const RenderContext& context, const SurfacePoint& point, Bits2 bits) {
+  constexpr std::uint64_t kAll = std::uint64_t{1} << 32;
+  const float share = context.cosine_share;
+  const auto split = static_cast<std::uint64_t>(share * 4294967296.0f);
+  LightSample sample;
+  EnvironmentValue sky;
+  if (bits.x < split) {
+    bits.x = stretched(bits.x, 0, split);
+    const Vec2 u(to_unit_float(bits.x), to_unit_float(bits.y));
+    sample.direction = make_frame(point.normal).to_world(cosine_hemisphere_disk(u));
+    sky = evaluate_environment(context.environment, sample.direction);
+  } else {
+    bits.x = stretched(bits.x, split, kAll - split);
+    const EnvironmentSample drawn = sample_environment(context.environment, bits);
+    sample.direction = drawn.direction;
+    sky = {drawn.radiance, drawn.pdf};
+  }
+  const float cosine = glm::dot(sample.direction, point.normal);
+  const float pdf = share * (max_of(cosine, 0.0f) * kInvPi) + (1.0f - share) * sky.pdf;
+  sample.contribution = lambertian(context, point, sample.direction, cosine, pdf, sky.radiance);
+  return sample;
+}
+
+}  // namespace
+
+LightSample sample_light(const RenderContext& context, const SurfacePoint& point,
+                         const Sampler& sampler, std::uint32_t index) {
+  const Bits2 bits = sampler.bits_2d(vertex_dimension(0, kVertexLightDirection), index);
+  if (context.method == Method::kWorldLight) return sample_sky(context, point, bits);
+  return sample_ambient(context, point, Vec2(to_unit_float(bits.x), to_unit_float(bits.y)));
+}
+
+Ray light_ray(const RenderContext& context, const SurfacePoint& point, const Hit& hit,
+              const Vec3& direction, float time) {
+  Ray ray;
+  ray.origin = leaving_origin(point);
+  ray.direction = direction;
+  ray.t_max = context.light_distance;
+  ray.time = time;
+  ray.mask = kMaskShadow;
+  ray.self_instance = hit.instance;
+  ray.self_primitive = hit.primitive;
+  return ray;
+}
+
+}  // namespace komorebi

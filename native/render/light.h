@@ -1,0 +1,25 @@
+#pragma once
+
+#include "core/sampler.h"
+#include "core/surface_point.h"
+#include "render/context.h"
+
+namespace komorebi {
+
+/// One direction to ask for light, with what it brings to the pixel if nothing is in the way.
+struct LightSample {
+  Vec3 direction{0.0f};
+  Vec3 contribution{0.0f};  ///< f · L · cos / pdf; null: no ray needs to be cast
+};
+
+/// Draws light ray `index` of a surface point: `index` counts over the pixel's camera samples and
+/// their light rays together (sample · light_samples + j), so that all rays of a pixel are one
+/// low-discrepancy set. Every surface is a white (or clay) Lambertian reflector.
+LightSample sample_light(const RenderContext& context, const SurfacePoint& point,
+                         const Sampler& sampler, std::uint32_t index);
+
+/// The shadow ray of a light sample.
+Ray light_ray(const RenderContext& context, const SurfacePoint& point, const Hit& hit,
+              const Vec3& direction, float time);
+
+}  // namespace komorebi

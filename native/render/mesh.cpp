@@ -1,0 +1,137 @@
+#include "render/mesh.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "render/mesh_check.h"
+#include "render/triangulate.h"
+
+namespace komorebi {
+namespace {
+
+template <class T>
+std::size_t bytes(const std::vector<T>& v) {
+  return v.capacity() * sizeof(T);
+}
+
+/// The middle of the bounds, one float an axis.
+Vec3 middle(std::span<const float> vtx2xyz) {
+  Vec3d lo(1e300), hi(-1e300);
+  for (std::size_t i = 0; i + 2 < vtx2xyz.size(); i += 3) {
+    const Vec3d p(vtx2xyz[i], vtx2xyz[i + 1], vtx2xyz[i + 2]);
+    lo = glm::min(lo, p);
+    hi = glm::max(hi, p);
+  }
+  return vtx2xyz.empty() ? Vec3(0.0f) : Vec3(0.5 * (lo + hi));
+}
+
+/// True when no vertex loses a bit by moving to `origin`.
+bool moves_exactly(std::span<const float> vtx2xyz, const Vec3& origin) {
+  for (std::size_t i = 0; i < vtx2xyz.size(); ++i) {
+    const double exact = double{vtx2xyz[i]} - double{origin[static_cast<int>(i % 3)]};
+    if (exact != double{static_cast<float>(exact)}) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void Mesh::take_positions(std::span<const float> vtx2xyz) {
+  const Vec3 candidate = middle(vtx2xyz);
+  const Vec3 origin = moves_exactly(vtx2xyz, candidate) ? candidate : Vec3(0.0f);
+  origin_ = Vec3d(origin);
+  vtx2xyz_.resize(vtx2xyz.size());
+  for (std::size_t i = 0; i < vtx2xyz.size(); ++i) {
+    vtx2xyz_[i] = vtx2xyz[i] - origin[static_cast<int>(i % 3)];
+  }
+}
+
+void Mesh::take_normals(const MeshInput& in, std::span<const std::int32_t> tri2face) {
+  const auto face = [&](std::size_t tri) { return static_cast<std::size_t>(tri2face[tri]); };
+  const std::size_t triangles = tri2face.size();
+  const auto smooth = [](std::uint8_t s) { return s != 0; };
+  const bool any_smooth =
+      in.face2smooth.empty() || std::any_of(in.face2smooth.begin(), in.face2smooth.end(), smooth);
+  if (!in.corner2normal.empty() && any_smooth) {
+    corner2normal_.resize(9 * triangles);
+    for (std::size_t k = 0; k < 3 * triangles; ++k) {
+      const float* normal = &in.corner2normal[3 * static_cast<std::size_t>(tri2corner_[k])];
+      std::copy_n(normal, 3, &corner2normal_[3 * k]);
+    }
+    if (!std::all_of(in.face2smooth.begin(), in.face2smooth.end(), smooth)) {
+      tri2smooth_.resize(triangles);
+      for (std::size_t t = 0; t < triangles; ++t) tri2smooth_[t] = in.face2smooth[face(t)];
+    }
+  }
+  const auto other_slot = [](std::int32_t slot) { return slot != 0; };
+  if (std::any_of(in.face2material.begin(), in.face2material.end(), other_slot)) {
+    tri2material_.resize(triangles);
+    for (std::size_t t = 0; t < triangles; ++t) {
+      tri2material_[t] = static_cast<std::uint16_t>(in.face2material[face(t)]);
+    }
+  }
+}
+
+std::shared_ptr<const Mesh> Mesh::build(const MeshInput& in, Builder builder, ThreadPool& pool,
+                                        const Cancel& cancel) {
+  check_mesh(in);
+  std::shared_ptr<Mesh> mesh(new Mesh);
+  mesh->name_ = in.name;
+  mesh->take_positions(in.vtx2xyz);
+
+  std::vector<std::int32_t> tri2face(in.tri2face.begin(), in.tri2face.end());
+  mesh->tri2corner_.assign(in.tri2corner.begin(), in.tri2corner.end());
+  if (in.tri2corner.empty()) {
+    Triangulation t = triangulate(in.vtx2xyz, in.corner2vtx, in.face_offsets);
+    mesh->tri2corner_ = std::move(t.tri2corner);
+    tri2face = std::move(t.tri2face);
+  }
+  mesh->tri2vtx_.resize(mesh->tri2corner_.size());
+  for (std::size_t k = 0; k < mesh->tri2corner_.size(); ++k) {
+    const auto corner = static_cast<std::size_t>(mesh->tri2corner_[k]);
+    mesh->tri2vtx_[k] = static_cast<std::uint32_t>(in.corner2vtx[corner]);
+  }
+  mesh->take_normals(in, tri2face);
+  if (cancel.raised()) throw Cancelled();
+  mesh->tree_ = build_mesh_tree(mesh->vtx2xyz_, mesh->tri2vtx_, builder, pool, cancel);
+  return mesh;
+}
+
+std::shared_ptr<const Mesh> Mesh::flattened(const Mat4d& matrix, ThreadPool& pool,
+                                            const Cancel& cancel) const {
+  std::vector<float> moved(vtx2xyz_.size());
+  for (std::size_t i = 0; i + 2 < moved.size(); i += 3) {
+    const Vec3d local = Vec3d(vtx2xyz_[i], vtx2xyz_[i + 1], vtx2xyz_[i + 2]) + origin_;
+    const glm::dvec4 p = matrix * glm::dvec4(local, 1.0);
+    for (int c = 0; c < 3; ++c) moved[i + static_cast<std::size_t>(c)] = static_cast<float>(p[c]);
+  }
+  std::shared_ptr<Mesh> mesh(new Mesh);
+  mesh->name_ = name_;
+  mesh->take_positions(moved);
+  mesh->tri2vtx_ = tri2vtx_;
+  mesh->tri2corner_ = tri2corner_;
+  mesh->tri2material_ = tri2material_;  // normals have no image under a flat matrix: flat shading
+  mesh->tree_ = build_mesh_tree(mesh->vtx2xyz_, mesh->tri2vtx_, Builder::kLinear, pool, cancel);
+  return mesh;
+}
+
+MeshView Mesh::view() const {
+  MeshView view;
+  view.triangle_count = triangle_count();
+  view.vertex_count = vertex_count();
+  view.vtx2xyz = vtx2xyz_.data();
+  view.tri2vtx = tri2vtx_.data();
+  view.corner2normal = corner2normal_.empty() ? nullptr : corner2normal_.data();
+  view.tri2smooth = tri2smooth_.empty() ? nullptr : tri2smooth_.data();
+  view.tri2material = tri2material_.empty() ? nullptr : tri2material_.data();
+  view.tree = tree_.view();
+  view.blocks = tree_.blocks.data();
+  return view;
+}
+
+std::size_t Mesh::byte_count() const {
+  return sizeof(Mesh) + bytes(vtx2xyz_) + bytes(tri2vtx_) + bytes(tri2corner_) +
+         bytes(corner2normal_) + bytes(tri2smooth_) + bytes(tri2material_) + tree_.byte_count();
+}
+
+}  // namespace komorebi

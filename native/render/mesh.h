@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bvh/mesh_tree.h"
+#include "bvh/topology.h"
+#include "core/scene_view.h"
+#include "parallel/cancel.h"
+#include "parallel/thread_pool.h"
+
+namespace komorebi {
+
+/// A polygon mesh as Blender holds it; the arrays are only read during the build.
+struct MeshInput {
+  std::string name;
+  std::span<const float> vtx2xyz;                ///< [vertices][3], object space
+  std::span<const std::int32_t> corner2vtx;      ///< [corners]
+  std::span<const std::int32_t> face_offsets;    ///< [faces + 1], first corner of each face
+  std::span<const std::int32_t> tri2corner;      ///< [triangles][3]; empty: triangles and quads only
+  std::span<const std::int32_t> tri2face;        ///< [triangles]; empty with tri2corner
+  std::span<const float> corner2normal;          ///< [corners][3]; empty: every face is flat
+  std::span<const std::uint8_t> face2smooth;     ///< [faces]; empty: every face is smooth
+  std::span<const std::int32_t> face2material;   ///< [faces]; empty: slot 0
+};
+
+/// A mesh in the tracer's own layout, with its tree: immutable, counted, shared by scenes, frames
+/// and view layers. Positions are relative to `origin`, which is the middle of the bounds when
+/// that subtraction is exact for every vertex, else null: a mesh far from its object's origin then
+/// costs the rays no precision.
+class Mesh {
+ public:
+  /// Throws std::invalid_argument naming the mesh and a count, or Cancelled.
+  static std::shared_ptr<const Mesh> build(const MeshInput& input, Builder builder, ThreadPool& pool,
+                                           const Cancel& cancel);
+
+  /// The same triangles under a matrix that has no inverse (an object scaled flat): transformed
+  /// here, because no ray can be taken into such an object's space. `matrix` acts on object space.
+  std::shared_ptr<const Mesh> flattened(const Mat4d& matrix, ThreadPool& pool,
+                                        const Cancel& cancel) const;
+
+  MeshView view() const;
+  const std::string& name() const { return name_; }
+  const Vec3d& origin() const { return origin_; }
+  const Aabb& bounds() const { return tree_.bounds; }  ///< relative to `origin`, conservative
+  std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(tri2vtx_.size() / 3); }
+  std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(vtx2xyz_.size() / 3); }
+  std::uint32_t degenerate_count() const { return tree_.degenerate_count; }
+  const MeshTree& tree() const { return tree_; }
+  const std::vector<std::int32_t>& tri2corner() const { return tri2corner_; }
+  std::size_t byte_count() const;
+
+ private:
+  Mesh() = default;
+  void take_positions(std::span<const float> vtx2xyz);
+  void take_normals(const MeshInput& input, std::span<const std::int32_t> tri2face);
+
+  std::string name_;
+  Vec3d origin_{0.0};
+  std::vector<float> vtx2xyz_;
+  std::vector<std::uint32_t> tri2vtx_;
+  std::vector<std::int32_t> tri2corner_;  // which corners carry UVs and normals, for baking
+  std::vector<float> corner2normal_;      // [triangles][3][3], or empty
+  std::vector<std::uint8_t> tri2smooth_;
+  std::vector<std::uint16_t> tri2material_;
+  MeshTree tree_;
+};
+
+}  // namespace komorebi

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/surface_point.h"
+#include "render/context.h"
+#include "render/film.h"
+
+namespace komorebi {
+
+/// Camera ray of a sample: pixel filter, lens and time drawn from the sample's own dimensions.
+Ray start_ray(const RenderContext& context, std::uint32_t x, std::uint32_t y, std::uint32_t sample);
+
+/// What a camera ray that misses everything shows: the world as the camera sees it.
+PixelSample background(const RenderContext& context, const Vec3& direction);
+
+/// Alpha, depth and normal of a surface seen by the camera; its radiance is still null.
+PixelSample seen_surface(const RenderContext& context, const SurfacePoint& point);
+
+/// One camera sample of one pixel, from the camera to its radiance, one ray after another. This is
+/// the specification of a render; the batches (batch.h) do the same work in another order and must
+/// agree to the bit.
+PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::uint32_t y,
+                          std::uint32_t sample);
+
+}  // namespace komorebi

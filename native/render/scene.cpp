@@ -1,0 +1,195 @@
+#include "render/scene.h"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace komorebi {
+namespace {
+
+/// Beyond this ratio of longest to shortest stretch, single precision can no longer take a ray into
+/// an object's space and back; the object's triangles are transformed instead.
+constexpr double kMaxCondition = 1e7;
+
+bool finite(const Mat4d& m) {
+  for (int c = 0; c < 4; ++c) {
+    for (int r = 0; r < 4; ++r) {
+      // A float must be able to hold it too.
+      if (!(std::abs(m[c][r]) <= 1e30)) return false;
+    }
+  }
+  return true;
+}
+
+double frobenius(const Mat3d& m) {
+  return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
+}
+
+bool invertible(const Mat3d& m, Mat3d& inverse) {
+  inverse = glm::inverse(m);
+  const double condition = frobenius(m) * frobenius(inverse);
+  return condition <= kMaxCondition;  // false for the NaN of a singular matrix
+}
+
+void check_world(const Vec3& radiance, const char* what) {
+  for (int c = 0; c < 3; ++c) {
+    if (!(radiance[c] >= 0.0f && radiance[c] <= 1e30f)) {
+      throw std::invalid_argument(std::string(what) + " must be finite and not negative");
+    }
+  }
+}
+
+}  // namespace
+
+Scene::Scene() = default;
+
+void Scene::require_open() const {
+  if (committed_) throw std::invalid_argument("the scene is committed and cannot be changed");
+}
+
+std::uint32_t Scene::add_mesh(std::shared_ptr<const Mesh> mesh) {
+  require_open();
+  if (!mesh) throw std::invalid_argument("add_mesh needs a mesh");
+  meshes_.push_back(std::move(mesh));
+  return static_cast<std::uint32_t>(meshes_.size() - 1);
+}
+
+void Scene::add_instances(std::span<const InstanceInput> instances, const std::string& name) {
+  require_open();
+  std::size_t bad = 0;
+  for (const InstanceInput& instance : instances) {
+    if (instance.mesh >= meshes_.size()) {
+      throw std::invalid_argument("instances of \"" + name + "\": there is no mesh " +
+                                  std::to_string(instance.mesh));
+    }
+    const Mat4d& m = instance.world_from_object;
+    bad += !(finite(m) && m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0);
+  }
+  if (bad) {
+    throw std::invalid_argument("instances of \"" + name + "\": " + std::to_string(bad) +
+                                (bad == 1 ? " matrix is" : " matrices are") +
+                                " not finite or not affine");
+  }
+  if (inputs_.size() + instances.size() >= kNone) {
+    throw std::invalid_argument("more instances than 32-bit indices can count");
+  }
+  inputs_.insert(inputs_.end(), instances.begin(), instances.end());
+}
+
+void Scene::set_world_color(const Vec3& radiance) {
+  require_open();
+  check_world(radiance, "the world's colour times its strength");
+  world_color_ = radiance;
+  environment_.reset();
+}
+
+void Scene::set_world_environment(std::shared_ptr<const Environment> environment, double strength,
+                                  const Mat3d& texture_from_world) {
+  require_open();
+  if (!environment) throw std::invalid_argument("set_world_environment needs an environment");
+  environment->view(strength, texture_from_world);  // refuses what is no rotation
+  environment_ = std::move(environment);
+  strength_ = strength;
+  texture_from_world_ = texture_from_world;
+}
+
+void Scene::set_camera(const CameraDesc& camera) {
+  require_open();
+  make_camera(camera, Vec3d(0.0));  // refuses what cannot be inverted
+  camera_desc_ = camera;
+  has_camera_ = true;
+}
+
+EnvironmentView Scene::environment() const {
+  return environment_ ? environment_->view(strength_, texture_from_world_)
+                      : constant_environment(world_color_);
+}
+
+float Scene::max_radiance() const {
+  if (environment_) return static_cast<float>(strength_) * environment_->max_radiance();
+  return max_abs(world_color_);
+}
+
+void Scene::place(const InstanceInput& input, ThreadPool& pool, const Cancel& cancel) {
+  std::shared_ptr<const Mesh> mesh = meshes_[input.mesh];
+  InstanceView instance;
+  instance.mesh = input.mesh;
+  instance.mask = input.mask;
+  instance.flags = input.flags;
+  instance.object_index = input.object_index;
+  Mat3d linear(input.world_from_object);
+  Mat3d inverse;
+  Vec3d position = Vec3d(input.world_from_object[3]);
+  if (invertible(linear, inverse)) {
+    position += linear * mesh->origin();
+  } else {
+    mesh = mesh->flattened(input.world_from_object, pool, cancel);
+    invisible_count_ += mesh->degenerate_count() == mesh->triangle_count();
+    instance.mesh = static_cast<std::uint32_t>(traced_meshes_.size());
+    traced_meshes_.push_back(mesh);
+    linear = inverse = Mat3d(1.0);
+    position = mesh->origin();
+  }
+  instance.world_from_local = Mat3(linear);
+  instance.local_from_world = Mat3(inverse);
+  instance.position = Vec3(position - origin_);
+  place_instance(instance, mesh->bounds());
+  instances_.push_back(instance);
+}
+
+void Scene::commit(ThreadPool& pool, const Cancel& cancel) {
+  require_open();
+  committed_ = true;
+  Vec3d lo(1e300), hi(-1e300);
+  for (const InstanceInput& input : inputs_) {
+    const Mesh& mesh = *meshes_[input.mesh];
+    const Aabb& box = mesh.bounds();
+    if (box.is_empty()) continue;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3d local(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                        corner & 4 ? box.hi.z : box.lo.z);
+      const Vec3d world(input.world_from_object * glm::dvec4(local + mesh.origin(), 1.0));
+      lo = glm::min(lo, world);
+      hi = glm::max(hi, world);
+    }
+  }
+  origin_ = lo.x <= hi.x ? 0.5 * (lo + hi) : Vec3d(0.0);
+
+  traced_meshes_ = meshes_;
+  instances_.reserve(inputs_.size());
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    if (i % 4096 == 0 && cancel.raised()) throw Cancelled();
+    place(inputs_[i], pool, cancel);
+  }
+  for (const auto& mesh : traced_meshes_) mesh_views_.push_back(mesh->view());
+  std::vector<Aabb> boxes;
+  boxes.reserve(instances_.size());
+  for (const InstanceView& instance : instances_) boxes.push_back(instance.world_bounds);
+  tree_ = build_instance_tree(boxes, Builder::kLinear, pool, cancel);
+  if (has_camera_) camera_ = make_camera(camera_desc_, origin_);
+
+  view_.meshes = mesh_views_.data();
+  view_.mesh_count = static_cast<std::uint32_t>(mesh_views_.size());
+  view_.instances = instances_.data();
+  view_.instance_count = static_cast<std::uint32_t>(instances_.size());
+  view_.tree = tree_.view();
+  view_.leaf2instance = tree_.leaf2instance.data();
+}
+
+std::uint64_t Scene::triangle_count() const {
+  std::uint64_t sum = 0;
+  for (const InstanceInput& input : inputs_) sum += meshes_[input.mesh]->triangle_count();
+  return sum;
+}
+
+std::size_t Scene::byte_count() const {
+  std::size_t sum = sizeof(Scene) + tree_.byte_count() +
+                    instances_.capacity() * sizeof(InstanceView) +
+                    inputs_.capacity() * sizeof(InstanceInput) +
+                    mesh_views_.capacity() * sizeof(MeshView);
+  for (const auto& mesh : traced_meshes_.empty() ? meshes_ : traced_meshes_) {
+    sum += mesh->byte_count();
+  }
+  return sum + (environment_ ? environment_->byte_count() : 0);
+}
+
+}  // namespace komorebi

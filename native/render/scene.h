@@ -1,0 +1,93 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bvh/instance_tree.h"
+#include "core/camera.h"
+#include "core/environment.h"
+#include "render/camera.h"
+#include "render/environment.h"
+#include "render/mesh.h"
+
+namespace komorebi {
+
+/// One placement of a mesh. `world_from_object` is in metres from Blender's world origin.
+struct InstanceInput {
+  std::uint32_t mesh = 0;
+  Mat4d world_from_object{1.0};
+  std::uint32_t object_index = 0;
+  std::uint32_t mask = kMaskAll;
+  std::uint32_t flags = 0;
+};
+
+/// Meshes, instances, world and camera; filled, then committed once, then read only.
+///
+/// Commit moves world space to the middle of the scene (in double), so that floats are fine
+/// around the geometry wherever in the world the artist has put it.
+class Scene {
+ public:
+  Scene();
+
+  std::uint32_t add_mesh(std::shared_ptr<const Mesh> mesh);
+  /// Throws std::invalid_argument when a matrix is not finite or no affine map, naming `name`.
+  void add_instances(std::span<const InstanceInput> instances, const std::string& name);
+  /// Uniform radiance, linear Rec.709, finite and not negative.
+  void set_world_color(const Vec3& radiance);
+  void set_world_environment(std::shared_ptr<const Environment> environment, double strength,
+                             const Mat3d& texture_from_world);
+  void set_camera(const CameraDesc& camera);
+
+  /// Builds the tree over instances. Throws Cancelled; after it the scene can only be dropped.
+  void commit(ThreadPool& pool, const Cancel& cancel);
+  bool committed() const { return committed_; }
+
+  const SceneView& view() const { return view_; }
+  const CameraView& camera() const { return camera_; }
+  const CameraDesc& camera_desc() const { return camera_desc_; }
+  bool has_camera() const { return has_camera_; }
+  EnvironmentView environment() const;
+  bool world_is_uniform() const { return !environment_; }
+  /// An upper bound of the radiance that the world sends along any ray.
+  float max_radiance() const;
+
+  const Vec3d& origin() const { return origin_; }
+  const std::vector<std::shared_ptr<const Mesh>>& meshes() const { return meshes_; }
+  const std::vector<InstanceInput>& inputs() const { return inputs_; }
+  std::uint64_t triangle_count() const;  ///< counted once an instance
+  std::uint32_t instance_count() const { return static_cast<std::uint32_t>(inputs_.size()); }
+  std::uint32_t invisible_count() const { return invisible_count_; }  ///< scaled to a line or point
+  std::size_t byte_count() const;
+
+  const Vec3& world_color() const { return world_color_; }
+  const std::shared_ptr<const Environment>& world_environment() const { return environment_; }
+  double world_strength() const { return strength_; }
+  const Mat3d& texture_from_world() const { return texture_from_world_; }
+
+ private:
+  void require_open() const;
+  void place(const InstanceInput& input, ThreadPool& pool, const Cancel& cancel);
+
+  bool committed_ = false;
+  bool has_camera_ = false;
+  std::vector<std::shared_ptr<const Mesh>> meshes_;
+  std::vector<InstanceInput> inputs_;
+  Vec3 world_color_{0.0f};
+  std::shared_ptr<const Environment> environment_;
+  double strength_ = 1.0;
+  Mat3d texture_from_world_{1.0};
+  CameraDesc camera_desc_;
+
+  Vec3d origin_{0.0};
+  std::vector<std::shared_ptr<const Mesh>> traced_meshes_;  // meshes_, then the flattened ones
+  std::vector<MeshView> mesh_views_;
+  std::vector<InstanceView> instances_;
+  std::uint32_t invisible_count_ = 0;
+  InstanceTree tree_;
+  CameraView camera_;
+  SceneView view_;
+};
+
+}  // namespace komorebi

@@ -1,0 +1,44 @@
+#include "render/settings.h"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace komorebi {
+namespace {
+
+/// Blender's own limits for samples and resolution are below these; the film's sums rely on them.
+constexpr std::uint32_t kMaxSamples = 1u << 24;
+constexpr std::uint32_t kMaxLightSamples = 1u << 12;
+
+void require(bool holds, const char* sentence) {
+  if (!holds) throw std::invalid_argument(sentence);
+}
+
+}  // namespace
+
+void check_settings(const Settings& s, std::uint32_t width, std::uint32_t height) {
+  require(s.samples >= 1 && s.samples <= kMaxSamples, "samples must be 1 to 16777216");
+  require(s.sample_offset <= kMaxSamples - s.samples,
+          "sample_offset + samples must not exceed 16777216");
+  require(s.light_samples >= 1 && s.light_samples <= kMaxLightSamples,
+          "light_samples must be 1 to 4096");
+  require(std::uint64_t{s.sample_offset + s.samples} * s.light_samples <= 0xffffffffu,
+          "(sample_offset + samples) times light_samples must stay below 2^32");
+  require(std::isfinite(s.ao_distance) && s.ao_distance >= 0.0f,
+          "ao_distance must be finite and not negative (0 is unlimited)");
+  for (int c = 0; c < 3; ++c) {
+    require(std::isfinite(s.clay_color[c]) && s.clay_color[c] >= 0.0f && s.clay_color[c] <= 1.0f,
+            "each channel of clay_color must be 0 to 1");
+  }
+  require(std::isfinite(s.filter_width) && s.filter_width >= 0.01f && s.filter_width <= 10.0f,
+          "filter_width must be 0.01 to 10 pixels");
+  require(s.tile_size >= 8 && s.tile_size <= 1024, "tile_size must be 8 to 1024 pixels");
+  require(s.threads <= 1024, "threads must be 0 (automatic) to 1024");
+  if (s.has_region) {
+    const Rect& r = s.region;
+    require(r.x_min < r.x_max && r.y_min < r.y_max && r.x_max <= width && r.y_max <= height,
+            "region must be a rectangle of at least one pixel inside the frame");
+  }
+}
+
+}  // namespace komorebi

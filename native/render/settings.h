@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/filter.h"
+#include "core/vector.h"
+
+namespace komorebi {
+
+enum class Method : std::uint32_t { kAmbientOcclusion, kWorldLight };
+enum class AoSampling : std::uint32_t { kCosine, kUniform };
+enum class EnvironmentSampling : std::uint32_t { kMis, kCosine, kEnvironment };
+
+/// A rectangle of full-frame pixels, half open; row 0 at the bottom.
+struct Rect {
+  std::uint32_t x_min = 0, y_min = 0, x_max = 0, y_max = 0;
+  std::uint32_t width() const { return x_max - x_min; }
+  std::uint32_t height() const { return y_max - y_min; }
+  std::size_t area() const { return static_cast<std::size_t>(width()) * height(); }
+};
+
+/// Everything about a render that is not in the scene. Names are those of `scene.komorebi`.
+struct Settings {
+  Method method = Method::kAmbientOcclusion;
+  std::uint32_t samples = 128;       ///< camera samples a pixel
+  std::uint32_t light_samples = 1;   ///< light rays per camera sample
+  std::uint32_t sample_offset = 0;   ///< index of the first camera sample
+  std::uint32_t seed = 0;
+  float ao_distance = 0.0f;          ///< metres; 0: unlimited
+  AoSampling ao_sampling = AoSampling::kCosine;
+  Vec3 clay_color{0.8f};             ///< albedo under World Light, linear Rec.709
+  EnvironmentSampling environment_sampling = EnvironmentSampling::kMis;
+  PixelFilter pixel_filter = PixelFilter::kBlackmanHarris;
+  float filter_width = 1.5f;         ///< pixels
+  bool use_progressive = true;       ///< refine the whole frame, not one tile to its end
+  bool film_transparent = false;
+  std::uint32_t threads = 0;         ///< 0: one per core
+  std::uint32_t tile_size = 64;      ///< pixels
+  bool has_region = false;           ///< false: the whole frame
+  Rect region;
+  std::vector<std::string> passes{"Combined", "Depth", "Normal"};
+};
+
+/// Throws std::invalid_argument with a sentence that names the setting out of range.
+void check_settings(const Settings& settings, std::uint32_t width, std::uint32_t height);
+
+}  // namespace komorebi
