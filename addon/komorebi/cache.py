@@ -1,0 +1,71 @@
+"""The one place for what outlives a frame: native meshes and environments, found by content.
+
+A key is a digest of everything that the object was made from, so an entry can be old but never
+wrong. Entries that two frames in a row did not use go; so do the longest unused ones beyond the
+limit, and all of them when a file is loaded, when the add-on is switched off, and after a render
+unless Persistent Data asks to keep them.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable
+from typing import Any
+
+LIMIT_BYTES = 2 << 30
+
+_entries: OrderedDict[bytes, tuple[Any, int]] = OrderedDict()
+_generation = 0
+hits = 0
+misses = 0
+
+
+def get(key: bytes, make: Callable[[], Any]) -> Any:
+    """The object of `key`, from `make()` when it is not here; it must tell its `byte_count`."""
+    global hits, misses
+    entry = _entries.get(key)
+    if entry is None:
+        misses += 1
+        value = make()
+    else:
+        hits += 1
+        value = entry[0]
+    _entries[key] = (value, _generation)
+    _entries.move_to_end(key)
+    return value
+
+
+def next_generation() -> None:
+    """A frame begins: what the last one did not use goes."""
+    global _generation
+    for key in [k for k, (_, used) in _entries.items() if used < _generation]:
+        del _entries[key]
+    _generation += 1
+
+
+def trim() -> None:
+    """Drops the longest unused entries until the rest is within the limit."""
+    total = byte_count()
+    while total > LIMIT_BYTES and _entries:
+        _, (value, _) = _entries.popitem(last=False)
+        total -= value.byte_count
+
+
+def byte_count() -> int:
+    return sum(value.byte_count for value, _ in _entries.values())
+
+
+def entry_count() -> int:
+    return len(_entries)
+
+
+def clear() -> None:
+    _entries.clear()
+
+
+def register() -> None:
+    clear()
+
+
+def unregister() -> None:
+    clear()

@@ -1,0 +1,137 @@
+"""The only place that knows Blender's releases (3.4 to 5.x)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import bpy
+import numpy as np
+
+from .scene_data import BoolArray, FloatArray, IntArray
+
+VERSION: tuple[int, int, int] = bpy.app.version
+
+FLAT_RECTS = VERSION >= (4, 1, 0)  # rect.foreach_set wants one dimension instead of two
+GENERIC_ATTRIBUTES = VERSION >= (3, 6, 0)  # position, .corner_vert, sharp_face are attributes
+CORNER_NORMALS = VERSION >= (4, 1, 0)  # mesh.corner_normals, no auto smooth
+
+
+def set_rect(render_pass: Any, pixels: FloatArray) -> None:
+    """Writes float32 `pixels` [height, width, channels] into a render pass of that size."""
+    channels = pixels.shape[2]
+    flat = np.ascontiguousarray(pixels)
+    render_pass.rect.foreach_set(flat.reshape(-1) if FLAT_RECTS else flat.reshape(-1, channels))
+
+
+def positions(mesh: Any) -> FloatArray:
+    """Vertex positions [vertices, 3] in object space."""
+    result = np.empty(len(mesh.vertices) * 3, np.float32)
+    if GENERIC_ATTRIBUTES:
+        mesh.attributes["position"].data.foreach_get("vector", result)
+    else:
+        mesh.vertices.foreach_get("co", result)
+    return result.reshape(-1, 3)
+
+
+def corner_verts(mesh: Any) -> IntArray:
+    """The vertex of each corner [corners]."""
+    result = np.empty(len(mesh.loops), np.int32)
+    if GENERIC_ATTRIBUTES:
+        mesh.attributes[".corner_vert"].data.foreach_get("value", result)
+    else:
+        mesh.loops.foreach_get("vertex_index", result)
+    return result
+
+
+def face_ranges(mesh: Any) -> tuple[IntArray, IntArray]:
+    """First corner and number of corners of each face [faces]."""
+    faces, corners = len(mesh.polygons), len(mesh.loops)
+    if GENERIC_ATTRIBUTES and corners == 3 * faces:
+        return np.arange(0, corners, 3, dtype=np.int32), np.full(faces, 3, np.int32)
+    starts = np.empty(faces, np.int32)
+    mesh.polygons.foreach_get("loop_start", starts)
+    if GENERIC_ATTRIBUTES:  # faces lie one after the other
+        return starts, np.diff(starts, append=np.int32(corners)).astype(np.int32)
+    totals = np.empty(faces, np.int32)
+    mesh.polygons.foreach_get("loop_total", totals)
+    return starts, totals
+
+
+def smooth_faces(mesh: Any) -> BoolArray:
+    """True for each face that is shaded smooth [faces]."""
+    faces = len(mesh.polygons)
+    if not GENERIC_ATTRIBUTES:
+        result = np.empty(faces, np.bool_)
+        mesh.polygons.foreach_get("use_smooth", result)
+        return result
+    sharp = mesh.attributes.get("sharp_face")
+    if sharp is None or sharp.domain != "FACE" or sharp.data_type != "BOOLEAN":
+        return np.ones(faces, np.bool_)
+    result = np.empty(faces, np.bool_)
+    sharp.data.foreach_get("value", result)
+    return ~result
+
+
+def corner_normals(mesh: Any, verts: IntArray) -> FloatArray:
+    """Shading normals [corners, 3]; `verts` as `corner_verts` gives them."""
+    if CORNER_NORMALS:
+        result = np.empty(len(mesh.loops) * 3, np.float32)
+        mesh.corner_normals.foreach_get("vector", result)
+        return result.reshape(-1, 3)
+    if mesh.use_auto_smooth:
+        result = np.empty(len(mesh.loops) * 3, np.float32)
+        mesh.calc_normals_split()
+        mesh.loops.foreach_get("normal", result)
+        mesh.free_normals_split()
+        return result.reshape(-1, 3)
+    result = np.empty(len(mesh.vertices) * 3, np.float32)
+    mesh.vertex_normals.foreach_get("vector", result)
+    return result.reshape(-1, 3)[verts]
+
+
+def face_materials(mesh: Any) -> IntArray | None:
+    """Material slot of each face [faces]; None: all are in the first."""
+    attribute = mesh.attributes.get("material_index")
+    if attribute is None or attribute.domain != "FACE" or attribute.data_type != "INT":
+        return None
+    result = np.empty(len(mesh.polygons), np.int32)
+    attribute.data.foreach_get("value", result)
+    return result if result.any() else None
+
+
+@contextmanager
+def mesh_of(obj: Any) -> Iterator[Any]:
+    """The evaluated mesh of `obj`, or None if it has no surface; freed afterwards if it is ours.
+
+    An object in edit mode, or one whose subdivision is left to the graphics card, holds its final
+    mesh elsewhere: only `to_mesh` finds it.
+    """
+    if obj.type == "MESH" and not _is_deferred(obj):
+        yield obj.data
+        return
+    try:
+        mesh = obj.to_mesh()
+    except RuntimeError:  # a curve or metaball without a surface of its own
+        mesh = None
+    try:
+        yield mesh
+    finally:
+        obj.to_mesh_clear()
+
+
+def _is_deferred(obj: Any) -> bool:
+    if obj.mode == "EDIT":
+        return True
+    modifiers = obj.modifiers
+    return not bpy.app.background and len(modifiers) > 0 and modifiers[-1].type == "SUBSURF"
+
+
+def world_nodes(world: Any) -> Any | None:
+    """The node tree that a world uses, or None (from 5.0 every world has one)."""
+    if VERSION < (5, 0, 0) and not world.use_nodes:
+        return None
+    return world.node_tree
+
+

@@ -1,0 +1,63 @@
+"""What Blender calls. Nothing but delegation: the work starts in `driver.py`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+from . import guard, passes
+
+ENGINE_ID = "KOMOREBI"
+
+
+class KomorebiRenderEngine(bpy.types.RenderEngine):
+    """The entry "Komorebi" in Blender's list of render engines.
+
+    An instance lives for one render (longer with Persistent Data) and holds only the frame that
+    is exported and not yet rendered; what outlives a frame is in `cache.py`.
+    """
+
+    bl_idname = ENGINE_ID
+    bl_label = "Komorebi"
+    bl_use_preview = False
+    bl_use_shading_nodes_custom = False
+    bl_use_eevee_viewport = True
+    bl_use_spherical_stereo = False
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        # From 4.4 Blender passes arguments that the base class must see; 5.2 comes here twice.
+        super().__init__(*args, **kwargs)
+
+    def __del__(self) -> None:
+        try:
+            self.frame = None
+            base = super()
+            if hasattr(base, "__del__"):
+                base.__del__()
+        except (ReferenceError, AttributeError):
+            pass  # Blender freed its half of the object first
+
+    def update(self, data: bpy.types.BlendData, depsgraph: bpy.types.Depsgraph) -> None:
+        """Exports the view layer of `depsgraph`; Blender's data is locked meanwhile."""
+        self.frame = guard.run(self, depsgraph, "export_frame")
+
+    def render(self, depsgraph: bpy.types.Depsgraph) -> None:
+        """Renders what `update` exported into Blender's render result."""
+        frame, self.frame = getattr(self, "frame", None), None
+        if frame is not None:
+            guard.run(self, depsgraph, "render_frame", frame)
+
+    def update_render_passes(
+        self, scene: bpy.types.Scene | None = None, renderlayer: bpy.types.ViewLayer | None = None
+    ) -> None:
+        """Tells Blender which passes a view layer will have."""
+        passes.register_passes(self, scene, renderlayer)
+
+
+def register() -> None:
+    bpy.utils.register_class(KomorebiRenderEngine)
+
+
+def unregister() -> None:
+    bpy.utils.unregister_class(KomorebiRenderEngine)

@@ -1,0 +1,22 @@
+"""Blender's scene → plain arrays (`scene_data.py`). The only part that reads bpy data."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..scene_data import SceneData
+from .camera import export_camera
+from .instance import export_instances
+from .unsupported import warn_unsupported
+from .world import export_world
+
+
+def export_scene(engine: Any, depsgraph: Any, view: str) -> SceneData:
+    """Everything that the view layer of `depsgraph` shows at its frame, seen by stereo `view`."""
+    scene = depsgraph.scene
+    warn_unsupported(engine, depsgraph)
+    data = SceneData(
+        camera=export_camera(engine, depsgraph, view), world=export_world(engine, scene.world)
+    )
+    export_instances(engine, depsgraph, data)
+    return data

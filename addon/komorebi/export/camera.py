@@ -1,0 +1,132 @@
+"""Blender's camera → one projection × view matrix, computed in doubles.
+
+The projection is Blender's own (sensor fit, lens shift, pixel aspect), from the camera's
+parameters rather than from `calc_matrix_camera`, which rounds to single precision.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..errors import RenderError
+from ..scene_data import CameraData, DoubleArray
+from .names import name_of
+
+KINDS = {"PERSP": "PERSPECTIVE", "ORTHO": "ORTHOGRAPHIC"}
+
+
+@dataclass(slots=True)
+class Lens:
+    """What shapes a camera's picture. Lengths of sensor and lens in mm, clip distances in m."""
+
+    kind: str  # PERSP, ORTHO
+    focal_length: float
+    ortho_scale: float  # m across the fitted side
+    sensor_fit: str  # AUTO, HORIZONTAL, VERTICAL
+    sensor_width: float
+    sensor_height: float
+    shift_x: float  # in units of the fitted side
+    shift_y: float
+    clip_start: float
+    clip_end: float
+
+
+def projection(
+    lens: Lens, width: int, height: int, aspect_x: float, aspect_y: float
+) -> DoubleArray:
+    """clip_from_camera [4, 4] as OpenGL's: the camera looks along −Z, Y up."""
+    horizontal = lens.sensor_fit == "HORIZONTAL" or (
+        lens.sensor_fit == "AUTO" and width * aspect_x >= height * aspect_y
+    )
+    y_per_x = aspect_y / aspect_x  # height of a pixel in its widths
+    side = width if horizontal else y_per_x * height  # the fitted side, in pixel widths
+    if lens.kind == "ORTHO":
+        pixel = lens.ortho_scale / side
+    else:
+        # With the fit on AUTO Blender takes the sensor's width for both sides.
+        sensor = lens.sensor_height if lens.sensor_fit == "VERTICAL" else lens.sensor_width
+        pixel = sensor * lens.clip_start / lens.focal_length / side
+    center_x, center_y = lens.shift_x * side * pixel, lens.shift_y * side * pixel
+    half_x, half_y = 0.5 * width * pixel, 0.5 * height * y_per_x * pixel
+    near, far = lens.clip_start, lens.clip_end
+
+    result = np.zeros((4, 4))
+    if lens.kind == "ORTHO":
+        result[0, 0], result[0, 3] = 1.0 / half_x, -center_x / half_x
+        result[1, 1], result[1, 3] = 1.0 / half_y, -center_y / half_y
+        result[2, 2], result[2, 3] = -2.0 / (far - near), -(far + near) / (far - near)
+        result[3, 3] = 1.0
+    else:
+        result[0, 0], result[0, 2] = near / half_x, center_x / half_x
+        result[1, 1], result[1, 2] = near / half_y, center_y / half_y
+        result[2, 2] = -(far + near) / (far - near)
+        result[2, 3] = -2.0 * far * near / (far - near)
+        result[3, 2] = -1.0
+    return result
+
+
+def camera_from_world(world_from_object: DoubleArray) -> DoubleArray:
+    """The view matrix [4, 4]; the camera object's scale is taken out, as Blender does."""
+    world_from_camera = np.array(world_from_object, np.float64)
+    lengths = np.linalg.norm(world_from_camera[:3, :3], axis=0)
+    if not np.isfinite(world_from_camera).all() or not (lengths > 0).all():
+        raise RenderError("The camera's scale is zero or its matrix not finite")
+    world_from_camera[:3, :3] /= lengths
+    try:
+        return np.linalg.inv(world_from_camera)
+    except np.linalg.LinAlgError:
+        raise RenderError("The camera's matrix cannot be inverted") from None
+
+
+def export_camera(engine: Any, depsgraph: Any, view: str) -> CameraData:
+    """The camera that renders this frame (scene's, marker's or strip's), for stereo `view`."""
+    camera = camera_object(engine, depsgraph)
+    lens = read_lens(camera)
+    if view:
+        engine.active_view_set(view)
+        world_from_object = np.array(engine.camera_model_matrix(camera), np.float64).reshape(4, 4)
+        lens.shift_x = engine.camera_shift_x(camera)
+    else:
+        world_from_object = np.array(camera.matrix_world, np.float64)
+    render = depsgraph.scene.render
+    width, height = engine.resolution_x, engine.resolution_y
+    clip_from_camera = projection(
+        lens, width, height, render.pixel_aspect_x, render.pixel_aspect_y
+    )
+    return CameraData(
+        kind=KINDS[lens.kind],
+        clip_from_world=clip_from_camera @ camera_from_world(world_from_object),
+        clip_start=lens.clip_start,
+        clip_end=lens.clip_end,
+        width=width,
+        height=height,
+    )
+
+
+def camera_object(engine: Any, depsgraph: Any) -> Any:
+    """The evaluated camera object, or RenderError."""
+    camera = engine.camera_override or depsgraph.scene.camera
+    if camera is None:
+        raise RenderError(f'Scene "{name_of(depsgraph.scene)}" has no camera')
+    return camera.evaluated_get(depsgraph)
+
+
+def read_lens(camera: Any) -> Lens:
+    """The parameters of a camera object; RenderError when its kind is not supported."""
+    data = camera.data
+    if camera.type != "CAMERA":
+        raise RenderError(f'Object "{name_of(camera)}" is used as a camera but is none')
+    if data.type not in KINDS:
+        raise RenderError(
+            f'Camera "{name_of(camera)}" is of type {data.type}, which is not supported yet: '
+            "make it perspective or orthographic"
+        )
+    return Lens(
+        kind=data.type, focal_length=data.lens, ortho_scale=data.ortho_scale,
+        sensor_fit=data.sensor_fit, sensor_width=data.sensor_width,
+        sensor_height=data.sensor_height, shift_x=data.shift_x, shift_y=data.shift_y,
+        clip_start=data.clip_start, clip_end=data.clip_end,
+    )  # fmt: skip

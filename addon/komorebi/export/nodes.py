@@ -1,0 +1,54 @@
+"""Walking a shader tree: what feeds a socket, past reroutes and muted nodes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+MAX_STEPS = 1000  # no tree of a person is longer; a cycle is
+
+
+def source(socket: Any) -> Any | None:
+    """The output socket that feeds the input `socket`, or None when nothing does."""
+    for _ in range(MAX_STEPS):
+        link = next((k for k in socket.links if k.is_valid and not k.is_muted), None)
+        if link is None:
+            return None
+        node = link.from_node
+        if node.type == "REROUTE":
+            socket = node.inputs[0]
+        elif node.mute:
+            through = [k.from_socket for k in node.internal_links if k.to_socket == link.from_socket]
+            if not through:
+                return None
+            socket = through[0]
+        else:
+            return link.from_socket
+    return None
+
+
+def world_output(tree: Any) -> Any | None:
+    """The World Output node that counts, or None."""
+    for target in ("ALL", "CYCLES", "EEVEE"):
+        node = tree.get_output_node(target)
+        if node is not None and node.type == "OUTPUT_WORLD":
+            return node
+    return None
+
+
+def find_upstream(node: Any, types: set[str]) -> Any | None:
+    """The nearest node of one of `types` that feeds `node`, groups searched as well."""
+    seen: set[int] = set()
+    queue = [node]
+    while queue:
+        current = queue.pop(0)
+        pointer = current.as_pointer()
+        if pointer in seen:
+            continue
+        seen.add(pointer)
+        if current.type in types:
+            return current
+        if current.type == "GROUP" and current.node_tree:
+            queue.extend(n for n in current.node_tree.nodes if n.type == "GROUP_OUTPUT")
+        feeding = (source(socket) for socket in current.inputs)
+        queue.extend(socket.node for socket in feeding if socket is not None)
+    return None

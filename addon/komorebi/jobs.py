@@ -1,0 +1,83 @@
+"""Knows which scenes Blender is rendering, from its render handlers.
+
+A scene strip starts a render within a render; a second scene that the compositor reads is
+rendered without handlers. Everything else (a still, a frame, an animation) is one job.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+from bpy.app.handlers import persistent
+
+from . import cache, discard, reporting
+
+_stack: list[bpy.types.Scene] = []
+
+
+def is_nested(scene: bpy.types.Scene) -> bool:
+    """True when `scene` is rendered on behalf of another scene, which ignores its reports."""
+    return len(_stack) > 1 or (bool(_stack) and _stack[-1] != scene)
+
+
+def framing_scene(scene: bpy.types.Scene) -> bpy.types.Scene:
+    """The scene whose render border counts: the compositor's, when it asked for `scene`."""
+    return _stack[-1] if _stack else scene
+
+
+@persistent
+def _on_init(scene: bpy.types.Scene, *_: Any) -> None:
+    if not _stack:
+        reporting.begin()
+    _stack.append(scene)
+
+
+@persistent
+def _on_pre(scene: bpy.types.Scene, *_: Any) -> None:
+    reporting.count_frame()
+    cache.next_generation()
+
+
+@persistent
+def _on_write(scene: bpy.types.Scene, *_: Any) -> None:
+    discard.after_write(scene)
+
+
+@persistent
+def _on_end(scene: bpy.types.Scene, *_: Any) -> None:
+    if _stack:
+        _stack.pop()
+    if not _stack:
+        reporting.end()
+        if not scene.render.use_persistent_data:
+            cache.clear()
+
+
+@persistent
+def _on_load(*_: Any) -> None:
+    _stack.clear()
+    cache.clear()
+
+
+_HANDLERS = (
+    ("render_init", _on_init),
+    ("render_pre", _on_pre),
+    ("render_write", _on_write),
+    ("render_complete", _on_end),
+    ("render_cancel", _on_end),
+    ("load_pre", _on_load),
+)
+
+
+def register() -> None:
+    for name, function in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(function)
+
+
+def unregister() -> None:
+    _stack.clear()
+    for name, function in _HANDLERS:
+        handlers = getattr(bpy.app.handlers, name)
+        if function in handlers:
+            handlers.remove(function)

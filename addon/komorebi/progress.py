@@ -1,0 +1,62 @@
+"""What the user reads while a frame renders: sample, tile, time left and memory."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import bpy
+
+INTERVAL_WINDOW = 0.1  # seconds between two lines in a window
+INTERVAL_BACKGROUND = 1.0  # in background each is a line in the log
+
+
+class Progress:
+    """Passes the session's progress on to Blender, not more often than anyone can read."""
+
+    def __init__(self, engine: Any, label: str, tile_count: int, ignored: str) -> None:
+        self._engine = engine
+        self._label = label
+        self._tile_count = tile_count
+        self._ignored = ignored
+        self._interval = INTERVAL_BACKGROUND if bpy.app.background else INTERVAL_WINDOW
+        self._next = 0.0
+        self._tiles = 0
+
+    def stage(self, text: str) -> None:
+        """Announces what happens before the first sample."""
+        self._engine.update_stats("", f"{self._label} | {text}")
+
+    def add_tiles(self, count: int) -> None:
+        self._tiles += count
+
+    def update(self, session: Any, final: bool = False) -> None:
+        now = time.monotonic()
+        if now < self._next and not final:
+            return
+        self._next = now + self._interval
+        state = session.progress()
+        self._engine.update_progress(min(max(state["fraction"], 0.0), 1.0))
+        memory = session.byte_count / 2**20
+        self._engine.update_memory_stats(memory_used=memory, memory_peak=memory)
+        parts = [self._label, f"Sample {state['sample']}/{state['samples']}"]
+        if final:
+            parts.append(f"{state['rays'] / 1e6:.1f}M rays")
+        else:
+            tile = self._tile_count if self._tiles == 0 else (self._tiles - 1) % self._tile_count + 1
+            parts.append(f"Tile {tile}/{self._tile_count}")
+            parts.append(f"Remaining {_clock(state['remaining'])}")
+        parts.append(f"Memory {memory:.1f}M")
+        if final and self._ignored:
+            parts.append(self._ignored)
+        self._engine.update_stats("", " | ".join(parts))
+
+
+def _clock(seconds: float) -> str:
+    """As Blender writes times: 01:02.50, or 1:01:02.50 from an hour on."""
+    if not 0.0 <= seconds < 1e7:
+        return "unknown"
+    minutes, rest = divmod(seconds, 60.0)
+    hours, minutes = divmod(int(minutes), 60)
+    clock = f"{minutes:02d}:{rest:05.2f}"
+    return f"{hours}:{clock}" if hours else clock

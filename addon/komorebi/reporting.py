@@ -1,0 +1,45 @@
+"""Warnings: each one once a job (a still or a whole animation), with a count at its end."""
+
+from __future__ import annotations
+
+import re
+
+import bpy
+
+_counts: dict[str, int] = {}
+_frames = 0
+
+
+def begin() -> None:
+    """A job starts: every warning may appear again."""
+    global _frames
+    _counts.clear()
+    _frames = 0
+
+
+def count_frame() -> None:
+    global _frames
+    _frames += 1
+
+
+def warn(engine: bpy.types.RenderEngine, sentence: str) -> None:
+    """Shows `sentence` unless this job has shown it. A warning never stops a render.
+
+    Farms look for the word "Error" in the log, so a warning never holds it, not even when a node
+    or an object has it in its name.
+    """
+    text = "Komorebi: " + re.sub("error", "err.", sentence, flags=re.IGNORECASE)
+    known = text in _counts
+    _counts[text] = _counts.get(text, 0) + 1
+    if not known:
+        engine.report({"WARNING"}, text)
+
+
+def end() -> None:
+    """A job is over: says how many warnings it had."""
+    if _counts:
+        times = sum(_counts.values())
+        plural = "" if len(_counts) == 1 else "s"
+        frames = f"{_frames} frame{'' if _frames == 1 else 's'}"
+        print(f"Komorebi: {len(_counts)} warning{plural}, {times} times in {frames}", flush=True)
+    _counts.clear()

@@ -1,0 +1,70 @@
+"""From the session's film into Blender's render result."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from . import compat
+from .errors import RenderError
+from .framing import Region
+from .passes import Pass
+
+Tile = tuple[int, int, int, int]
+
+DUTY = 10.0  # showing tiles may take a tenth of the time
+
+
+class ResultWriter:
+    """Writes one view of one view layer; tiles are relative to the region."""
+
+    def __init__(
+        self, engine: Any, layer: str, view: str, region: Region, passes: list[Pass]
+    ) -> None:
+        self._engine = engine
+        self._layer, self._view = layer, view
+        self._passes = passes
+        self._width, self._height = region[2] - region[0], region[3] - region[1]
+        self._pending: set[Tile] = set()
+        self._next = 0.0
+
+    def show(self, session: Any, tiles: list[Tile]) -> None:
+        """Brings finished tiles to the screen; holds them back while that would cost too much."""
+        self._pending.update(tiles)
+        start = time.monotonic()
+        if not self._pending or start < self._next:
+            return
+        covered = sum(width * height for _, _, width, height in self._pending)
+        if 2 * covered > self._width * self._height:
+            self._write(session, (0, 0, self._width, self._height), self._passes[:1])
+        else:
+            for tile in self._pending:
+                self._write(session, tile, self._passes[:1])
+        self._pending.clear()
+        end = time.monotonic()
+        self._next = end + DUTY * (end - start)
+
+    def finish(self, session: Any) -> None:
+        """Writes every pass of the whole region."""
+        self._write(session, (0, 0, self._width, self._height), self._passes)
+
+    def _write(self, session: Any, tile: Tile, passes: list[Pass]) -> None:
+        x, y, width, height = tile
+        result = self._engine.begin_result(
+            x, y, width, height, layer=self._layer, view=self._view
+        )
+        if result is None:
+            raise RenderError("Blender has no place for the picture")
+        try:
+            if (result.resolution_x, result.resolution_y) != (width, height):
+                raise RenderError(
+                    f"Blender expects {result.resolution_x} × {result.resolution_y} pixels, "
+                    f"not {width} × {height}"
+                )
+            layer_passes = result.layers[0].passes
+            for p in passes:
+                target = layer_passes.find_by_name(p.name, self._view)
+                if target is not None:
+                    compat.set_rect(target, session.read(p.name, x, y, width, height))
+        finally:
+            self._engine.end_result(result)

@@ -1,0 +1,109 @@
+"""A scene as plain arrays, between Blender and the core. No bpy in here.
+
+World space is Blender's: metres, Z up. Rows run bottom-up, colours are scene-linear Rec.709.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float32]
+DoubleArray = NDArray[np.float64]
+IntArray = NDArray[np.int32]
+UIntArray = NDArray[np.uint32]
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(slots=True)
+class MeshData:
+    """One mesh in its own space; corners of face f are face_offsets[f] … face_offsets[f + 1] − 1."""
+
+    name: str
+    positions: FloatArray  # [vertices, 3]
+    corner_verts: IntArray  # [corners]
+    face_offsets: IntArray  # [faces + 1]
+    tri2corner: IntArray | None = None  # [triangles, 3]; None: no face has more than 4 corners
+    tri2face: IntArray | None = None  # [triangles]; with tri2corner
+    corner_normals: FloatArray | None = None  # [corners, 3]; None: flat
+    smooth_faces: BoolArray | None = None  # [faces]; None: all as corner_normals says
+    face_materials: IntArray | None = None  # [faces]; None: all slot 0
+
+    def digest(self) -> bytes:
+        """Equal for equal content, whatever its name; 128 bits."""
+        digest = hashlib.blake2b(digest_size=16)
+        for array in (
+            self.positions, self.corner_verts, self.face_offsets, self.tri2corner, self.tri2face,
+            self.corner_normals, self.smooth_faces, self.face_materials,
+        ):  # fmt: skip
+            digest.update(b"-" if array is None else repr((array.dtype.str, array.shape)).encode())
+            if array is not None:
+                digest.update(np.ascontiguousarray(array).data)
+        return digest.digest()
+
+
+@dataclass(slots=True)
+class InstanceData:
+    """All copies of one mesh. Matrices are world_from_object, mathematics' row-major (M @ p)."""
+
+    mesh: int  # index into SceneData.meshes
+    name: str
+    matrices: DoubleArray  # [count, 4, 4]
+    object_index: UIntArray  # [count], index into SceneData.object_names
+    mask: UIntArray | None = None  # [count], bits RAY_*; None: seen by every ray
+    flags: UIntArray | None = None  # [count], bits FLAG_*; None: none
+
+
+RAY_CAMERA = 1 << 0
+RAY_DIFFUSE = 1 << 1
+RAY_SHADOW = 1 << 2
+RAY_ALL = 0xFFFFFFFF
+FLAG_HOLDOUT = 1 << 0
+FLAG_SHADOW_CATCHER = 1 << 1
+
+
+@dataclass(slots=True)
+class CameraData:
+    """A camera by its projection × view matrix (clip space as OpenGL's), full frame in pixels."""
+
+    kind: str  # PERSPECTIVE, ORTHOGRAPHIC
+    clip_from_world: DoubleArray  # [4, 4]
+    clip_start: float  # metres along the view axis
+    clip_end: float
+    width: int
+    height: int
+
+
+@dataclass(slots=True)
+class EnvironmentImage:
+    """An equirectangular picture: either a file for the core to read, or pixels."""
+
+    name: str
+    path: str | None = None
+    color_space: str = "LINEAR"  # of the file: LINEAR, SRGB
+    pixels: FloatArray | None = None  # [height, width, 3], linear, row 0 at the bottom
+
+
+@dataclass(slots=True)
+class WorldData:
+    """Either one colour (radiance, its strength included) or a map times `strength`."""
+
+    color: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    image: EnvironmentImage | None = None
+    strength: float = 1.0
+    texture_from_world: DoubleArray = field(default_factory=lambda: np.eye(3))  # [3, 3]
+
+
+@dataclass(slots=True)
+class SceneData:
+    """Everything that a view layer of a frame shows."""
+
+    camera: CameraData
+    world: WorldData
+    meshes: list[MeshData] = field(default_factory=list)
+    instances: list[InstanceData] = field(default_factory=list)
+    object_names: list[str] = field(default_factory=list)
+    ignored: dict[str, int] = field(default_factory=dict)  # kind of object → how many
