@@ -1,0 +1,106 @@
+// Which kernel runs. The choice is made here and not by Highway's library, so that the module
+// loads no shared library for it.
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+
+#include "bvh/kernel.h"
+#include "bvh/traverse.h"
+
+namespace komorebi {
+namespace {
+
+void intersect_all_scalar(const SceneView& scene, const RaySpan& rays, Hit* hits) {
+  for (std::uint32_t i = 0; i < rays.count; ++i) hits[i] = intersect_scalar(scene, rays[i]);
+}
+
+void occluded_all_scalar(const SceneView& scene, const RaySpan& rays, std::uint32_t* bits) {
+  for (std::uint32_t i = 0; i < (rays.count + 31) / 32; ++i) bits[i] = 0;
+  for (std::uint32_t i = 0; i < rays.count; ++i) {
+    if (occluded_scalar(scene, rays[i])) bits[i / 32] |= 1u << (i % 32);
+  }
+}
+
+constexpr Kernel kScalarKernel = {"SCALAR", &intersect_all_scalar, &occluded_all_scalar};
+
+/// The kernel of that name, or null if there is none that this machine runs.
+const Kernel* find_kernel(const char* name) {
+  for (const Kernel* const* kernel = kSimdKernels; *kernel != nullptr; ++kernel) {
+    if (std::strcmp((*kernel)->name, name) == 0 && machine_has(name)) return *kernel;
+  }
+  return std::strcmp(name, kScalarKernel.name) == 0 ? &kScalarKernel : nullptr;
+}
+
+const Kernel* best_kernel() {
+  if (const char* wanted = std::getenv("KOMOREBI_ISA"); wanted != nullptr) {
+    if (const Kernel* kernel = find_kernel(wanted); kernel != nullptr) return kernel;
+  }
+  for (const Kernel* const* kernel = kSimdKernels; *kernel != nullptr; ++kernel) {
+    if (machine_has((*kernel)->name)) return *kernel;
+  }
+  return &kScalarKernel;
+}
+
+std::atomic<const Kernel*> forced_kernel{nullptr};
+
+const Kernel& active_kernel() {
+  static const Kernel* const best = best_kernel();
+  const Kernel* const forced = forced_kernel.load(std::memory_order_relaxed);
+  return forced != nullptr ? *forced : *best;
+}
+
+}  // namespace
+
+bool machine_has(const char* kernel_name) {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_cpu_init();
+  // What Highway lets the compiler use for each (hwy/ops/set_macros-inl.h).
+  const bool sse4 = __builtin_cpu_supports("sse4.1") && __builtin_cpu_supports("sse4.2") &&
+                    __builtin_cpu_supports("pclmul") && __builtin_cpu_supports("aes");
+  const bool avx2 = sse4 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
+                    __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma") &&
+                    __builtin_cpu_supports("f16c");
+  const bool avx3 = avx2 && __builtin_cpu_supports("avx512f") &&
+                    __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
+                    __builtin_cpu_supports("avx512bw");
+  if (std::strcmp(kernel_name, "SSE4") == 0) return sse4;
+  if (std::strcmp(kernel_name, "AVX2") == 0) return avx2;
+  if (std::strcmp(kernel_name, "AVX3") == 0) return avx3;
+  return false;
+#else
+  return kernel_name != nullptr;  // only instruction sets that the whole build may use
+#endif
+}
+
+void intersect(const SceneView& scene, const RaySpan& rays, Hit* hits) {
+  active_kernel().intersect(scene, rays, hits);
+}
+
+void occluded(const SceneView& scene, const RaySpan& rays, std::uint32_t* bits) {
+  active_kernel().occluded(scene, rays, bits);
+}
+
+std::vector<std::string> built_instruction_sets() {
+  std::vector<std::string> names;
+  for (const Kernel* const* kernel = kSimdKernels; *kernel != nullptr; ++kernel) {
+    if (machine_has((*kernel)->name)) names.emplace_back((*kernel)->name);
+  }
+  names.emplace_back(kScalarKernel.name);
+  return names;
+}
+
+const char* active_instruction_set() {
+  return active_kernel().name;
+}
+
+void force_instruction_set(const std::string& name) {
+  const Kernel* kernel = name.empty() ? nullptr : find_kernel(name.c_str());
+  if (kernel == nullptr && !name.empty()) {
+    throw std::invalid_argument("there is no kernel for the instruction set \"" + name +
+                                "\" in this build or machine");
+  }
+  forced_kernel.store(kernel, std::memory_order_relaxed);
+}
+
+}  // namespace komorebi

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/scene_view.h"
+
+namespace komorebi {
+
+/// Traversal compiled for one instruction set.
+struct Kernel {
+  const char* name;
+  void (*intersect)(const SceneView& scene, const RaySpan& rays, Hit* hits);
+  void (*occluded)(const SceneView& scene, const RaySpan& rays, std::uint32_t* bits);
+};
+
+/// Null-terminated, best first; whether the machine has the instruction set is another question.
+extern const Kernel* const kSimdKernels[];
+
+/// Whether this machine and its operating system run the kernel of that name.
+bool machine_has(const char* kernel_name);
+
+}  // namespace komorebi
