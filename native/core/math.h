@@ -110,7 +110,7 @@ inline SinCos<T> sin_cos_turns(T u) {
   }
 }
 
-/// The angle of (x, y) in radians, in [−π, π]; 0 for (0, 0).
+/// The angle of (x, y) in radians, in [−π, π]; 0 for (0, 0); −0 counts as 0.
 /// Error ≤ 4e-7 in float (relative 3e-7 near 0), 8e-16 in double. Arguments finite, and so far
 /// from the ends of the range that x + y neither overflows nor vanishes.
 template <typename T>
