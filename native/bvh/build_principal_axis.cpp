@@ -6,8 +6,10 @@
 namespace komorebi {
 namespace {
 
-/// From this depth on nodes are split in the middle, which adds at most 32 levels.
-constexpr std::uint32_t kMedianDepth = kMaxDepth - 32;
+/// From this depth on nodes are split in the middle, which adds at most 32 levels. A million
+/// triangles of a scan are some 25 deep.
+constexpr std::uint32_t kMedianDepth = 40;
+static_assert(kMedianDepth + 32 <= kMaxDepth);
 constexpr int kPowerIterations = 16;
 
 /// Rows of a symmetric 3×3 matrix, in double.

@@ -1,0 +1,69 @@
+#include "parallel/radix_sort.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+namespace komorebi {
+namespace {
+
+template <class Key>
+void expect_sorted_as_std(const std::vector<Key>& keys) {
+  std::vector<KeyIndex<Key>> expected(keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    expected[i] = {keys[i], static_cast<std::uint32_t>(i)};
+  }
+  const std::vector<KeyIndex<Key>> unsorted = expected;
+  std::stable_sort(expected.begin(), expected.end(),
+                   [](const auto& a, const auto& b) { return a.key < b.key; });
+  for (const unsigned threads : {1u, 2u, 7u}) {
+    ThreadPool pool(threads);
+    const Cancel cancel;
+    std::vector<KeyIndex<Key>> items = unsorted, scratch(keys.size());
+    radix_sort(items, scratch, pool, cancel);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      ASSERT_EQ(items[i].key, expected[i].key) << "position " << i << ", " << threads << " threads";
+      ASSERT_EQ(items[i].index, expected[i].index) << "position " << i;
+    }
+  }
+}
+
+template <class Key>
+std::vector<Key> random_keys(std::size_t count, Key mask) {
+  std::mt19937_64 random(count);
+  std::vector<Key> keys(count);
+  for (Key& key : keys) key = static_cast<Key>(random()) & mask;
+  return keys;
+}
+
+TEST(RadixSort, AgreesWithStableSort) {
+  for (const std::size_t count : {0u, 1u, 2u, 255u, 8193u, 200000u}) {
+    expect_sorted_as_std(random_keys<std::uint32_t>(count, ~0u));
+    expect_sorted_as_std(random_keys<std::uint64_t>(count, ~std::uint64_t{0}));
+  }
+}
+
+TEST(RadixSort, KeepsTheOrderOfEqualKeys) {
+  expect_sorted_as_std(random_keys<std::uint32_t>(100000, 0x3u));
+  expect_sorted_as_std(random_keys<std::uint64_t>(100000, 0x8000000000000001u));
+  expect_sorted_as_std(std::vector<std::uint32_t>(100000, 7u));
+}
+
+TEST(RadixSort, SortsWhenOnlyOneDigitDiffers) {
+  // An odd number of passes: the result lies in the scratch array and must come back.
+  expect_sorted_as_std(random_keys<std::uint32_t>(50000, 0x00ff0000u));
+  expect_sorted_as_std(random_keys<std::uint64_t>(50000, std::uint64_t{0xff} << 56));
+}
+
+TEST(RadixSort, StopsWhenCancelled) {
+  ThreadPool pool(2);
+  Cancel cancel;
+  cancel.raise();
+  std::vector<KeyIndex<std::uint32_t>> items(100000), scratch(items.size());
+  EXPECT_THROW(radix_sort(items, scratch, pool, cancel), Cancelled);
+}
+
+}  // namespace
+}  // namespace komorebi
