@@ -133,5 +133,3 @@ def world_nodes(world: Any) -> Any | None:
     if VERSION < (5, 0, 0) and not world.use_nodes:
         return None
     return world.node_tree
-
-

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import bpy
 
@@ -17,7 +18,7 @@ def pictures_since(moment: float) -> None:
     _since = moment if _since is None else min(_since, moment)
 
 
-def after_write(scene: bpy.types.Scene) -> None:
+def after_write(scene: Any) -> None:
     """Called when Blender has written the frame's pictures."""
     global _since
     if _since is None:
@@ -33,7 +34,7 @@ def after_write(scene: bpy.types.Scene) -> None:
     _since = None
 
 
-def _candidates(scene: bpy.types.Scene) -> Iterator[Path]:
+def _candidates(scene: Any) -> Iterator[Path]:
     render = scene.render
     yield Path(render.frame_path(frame=scene.frame_current))
     still = bpy.path.abspath(render.filepath)
@@ -45,7 +46,7 @@ def _candidates(scene: bpy.types.Scene) -> Iterator[Path]:
             yield from _file_output(node, scene.frame_current)
 
 
-def _file_output(node: bpy.types.Node, frame: int) -> Iterator[Path]:
+def _file_output(node: Any, frame: int) -> Iterator[Path]:
     folder = bpy.path.abspath(node.base_path)
     if node.format.file_format == "OPEN_EXR_MULTILAYER":
         folder, name = os.path.split(folder)

@@ -57,7 +57,7 @@ def export_frame(engine: Any, depsgraph: Any) -> Frame | None:
     return Frame(layer, region, passes, settings, views)
 
 
-def render_frame(engine: Any, depsgraph: Any, frame: Frame) -> None:
+def render_frame(engine: Any, _depsgraph: Any, frame: Frame) -> None:
     """Renders the exported views one after the other."""
     for view in frame.views:
         _render_view(engine, frame, view)

@@ -1,3 +1,4 @@
+# mypy: disable-error-code="override"
 """What Blender calls. Nothing but delegation: the work starts in `driver.py`."""
 
 from __future__ import annotations
@@ -38,19 +39,17 @@ class KomorebiRenderEngine(bpy.types.RenderEngine):
         except (ReferenceError, AttributeError):
             pass  # Blender freed its half of the object first
 
-    def update(self, data: bpy.types.BlendData, depsgraph: bpy.types.Depsgraph) -> None:
+    def update(self, data: Any, depsgraph: Any) -> None:
         """Exports the view layer of `depsgraph`; Blender's data is locked meanwhile."""
         self.frame = guard.run(self, depsgraph, "export_frame")
 
-    def render(self, depsgraph: bpy.types.Depsgraph) -> None:
+    def render(self, depsgraph: Any) -> None:
         """Renders what `update` exported into Blender's render result."""
         frame, self.frame = getattr(self, "frame", None), None
         if frame is not None:
             guard.run(self, depsgraph, "render_frame", frame)
 
-    def update_render_passes(
-        self, scene: bpy.types.Scene | None = None, renderlayer: bpy.types.ViewLayer | None = None
-    ) -> None:
+    def update_render_passes(self, scene: Any = None, renderlayer: Any = None) -> None:
         """Tells Blender which passes a view layer will have."""
         passes.register_passes(self, scene, renderlayer)
 

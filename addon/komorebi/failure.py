@@ -14,6 +14,7 @@ import os
 import signal
 import sys
 import time
+from typing import Any
 
 import bpy
 
@@ -22,9 +23,7 @@ from . import discard, jobs
 _break_sent = False
 
 
-def fail(
-    engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, sentence: str
-) -> None:
+def fail(engine: Any, depsgraph: Any, sentence: str) -> None:
     """Reports why the frame failed and sees to it that the process will not end in success."""
     engine.report({"ERROR"}, f"Komorebi: {sentence}")
     if bpy.app.background and jobs.is_nested(depsgraph.scene.original):

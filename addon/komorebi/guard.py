@@ -10,15 +10,11 @@ import sys
 import traceback
 from typing import Any
 
-import bpy
-
 from . import failure
 from .errors import RenderCancelled, RenderError
 
 
-def run(
-    engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, step: str, *args: Any
-) -> Any:
+def run(engine: Any, depsgraph: Any, step: str, *args: Any) -> Any:
     """Calls `driver.<step>(engine, depsgraph, *args)`; None when it failed or was cancelled."""
     try:
         # Late, so that the add-on can be enabled, and can say what is wrong, without NumPy.

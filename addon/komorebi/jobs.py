@@ -13,39 +13,39 @@ from bpy.app.handlers import persistent
 
 from . import cache, discard, reporting
 
-_stack: list[bpy.types.Scene] = []
+_stack: list[Any] = []
 
 
-def is_nested(scene: bpy.types.Scene) -> bool:
+def is_nested(scene: Any) -> bool:
     """True when `scene` is rendered on behalf of another scene, which ignores its reports."""
     return len(_stack) > 1 or (bool(_stack) and _stack[-1] != scene)
 
 
-def framing_scene(scene: bpy.types.Scene) -> bpy.types.Scene:
+def framing_scene(scene: Any) -> Any:
     """The scene whose render border counts: the compositor's, when it asked for `scene`."""
     return _stack[-1] if _stack else scene
 
 
 @persistent
-def _on_init(scene: bpy.types.Scene, *_: Any) -> None:
+def _on_init(scene: Any, *_: Any) -> None:
     if not _stack:
         reporting.begin()
     _stack.append(scene)
 
 
 @persistent
-def _on_pre(scene: bpy.types.Scene, *_: Any) -> None:
+def _on_pre(*_: Any) -> None:
     reporting.count_frame()
     cache.next_generation()
 
 
 @persistent
-def _on_write(scene: bpy.types.Scene, *_: Any) -> None:
+def _on_write(scene: Any, *_: Any) -> None:
     discard.after_write(scene)
 
 
 @persistent
-def _on_end(scene: bpy.types.Scene, *_: Any) -> None:
+def _on_end(scene: Any, *_: Any) -> None:
     if _stack:
         _stack.pop()
     if not _stack:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,7 @@ def build(core: Any, data: SceneData, threads: int, cancel: Any) -> tuple[Any, A
     indices = []
     for index, mesh in enumerate(data.meshes):
         key = b"mesh" + mesh.digest()
-        native = cache.get(key, lambda mesh=mesh: _native_mesh(core, mesh, threads, cancel))
+        native = cache.get(key, partial(_native_mesh, core, mesh, threads, cancel))
         indices.append(scene.add_mesh(native))
         data.meshes[index] = None  # type: ignore[call-overload]
     for group in data.instances:

@@ -1,5 +1,7 @@
-# mypy: disable-error-code="valid-type"
+# mypy: disable-error-code="valid-type,override"
 """Operators."""
+
+from typing import Any
 
 import bpy
 from bpy.props import StringProperty
@@ -16,14 +18,14 @@ class KOMOREBI_OT_dump(bpy.types.Operator):
     filepath: StringProperty(subtype="FILE_PATH")
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def poll(cls, context: Any) -> bool:
         return bool(context.scene.render.engine == "KOMOREBI")
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: Any, event: Any) -> set[str]:
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: Any) -> set[str]:
         if not self.filepath:
             self.report({"ERROR"}, "Komorebi: no file to write the scene to")
             return {"CANCELLED"}

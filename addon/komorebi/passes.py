@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-
-import bpy
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -26,14 +25,12 @@ PASSES = (
 )
 
 
-def enabled_passes(view_layer: bpy.types.ViewLayer) -> list[Pass]:
+def enabled_passes(view_layer: Any) -> list[Pass]:
     """The passes that `view_layer` asks for."""
     return [p for p in PASSES if p.switch is None or getattr(view_layer, p.switch)]
 
 
-def register_passes(
-    engine: bpy.types.RenderEngine, scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer
-) -> None:
+def register_passes(engine: Any, scene: Any, view_layer: Any) -> None:
     for p in enabled_passes(view_layer):
         engine.register_pass(scene, view_layer, p.name, p.channels, p.channel_ids, p.kind)
 

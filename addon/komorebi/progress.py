@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 
 INTERVAL_WINDOW = 0.1  # seconds between two lines in a window
-INTERVAL_BACKGROUND = 1.0  # in background each is a line in the log
+INTERVAL_BACKGROUND = 1.0  # at least; in background each is a line in the log
 
 
 class Progress:
@@ -34,8 +34,9 @@ class Progress:
         now = time.monotonic()
         if now < self._next and not final:
             return
-        self._next = now + self._interval
         state = session.progress()
+        # The longer the render, the fewer the lines: 2 % of what has passed.
+        self._next = now + max(self._interval, 0.02 * state["elapsed"])
         self._engine.update_progress(min(max(state["fraction"], 0.0), 1.0))
         memory = session.byte_count / 2**20
         self._engine.update_memory_stats(memory_used=memory, memory_peak=memory)
@@ -43,7 +44,7 @@ class Progress:
         if final:
             parts.append(f"{state['rays'] / 1e6:.1f}M rays")
         else:
-            tile = self._tile_count if self._tiles == 0 else (self._tiles - 1) % self._tile_count + 1
+            tile = (self._tiles - 1) % self._tile_count + 1  # counted anew in each pass
             parts.append(f"Tile {tile}/{self._tile_count}")
             parts.append(f"Remaining {_clock(state['remaining'])}")
         parts.append(f"Memory {memory:.1f}M")

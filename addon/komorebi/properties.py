@@ -1,4 +1,4 @@
-# mypy: disable-error-code="valid-type"
+# mypy: disable-error-code="valid-type,attr-defined,func-returns-value"
 """The settings of a scene, `scene.komorebi`. Scripts rely on these names and defaults."""
 
 import bpy
@@ -90,9 +90,7 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
 
 def register() -> None:
     bpy.utils.register_class(KomorebiSceneSettings)
-    bpy.types.Scene.komorebi = PointerProperty(
-        name="Komorebi Settings", type=KomorebiSceneSettings
-    )
+    bpy.types.Scene.komorebi = PointerProperty(name="Komorebi Settings", type=KomorebiSceneSettings)
 
 
 def unregister() -> None:

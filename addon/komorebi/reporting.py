@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-
-import bpy
+from typing import Any
 
 _counts: dict[str, int] = {}
 _frames = 0
@@ -22,7 +21,7 @@ def count_frame() -> None:
     _frames += 1
 
 
-def warn(engine: bpy.types.RenderEngine, sentence: str) -> None:
+def warn(engine: Any, sentence: str) -> None:
     """Shows `sentence` unless this job has shown it. A warning never stops a render.
 
     Farms look for the word "Error" in the log, so a warning never holds it, not even when a node

@@ -50,9 +50,7 @@ class ResultWriter:
 
     def _write(self, session: Any, tile: Tile, passes: list[Pass]) -> None:
         x, y, width, height = tile
-        result = self._engine.begin_result(
-            x, y, width, height, layer=self._layer, view=self._view
-        )
+        result = self._engine.begin_result(x, y, width, height, layer=self._layer, view=self._view)
         if result is None:
             raise RenderError("Blender has no place for the picture")
         try:

@@ -20,7 +20,7 @@ BoolArray = NDArray[np.bool_]
 
 @dataclass(slots=True)
 class MeshData:
-    """One mesh in its own space; corners of face f are face_offsets[f] … face_offsets[f + 1] − 1."""
+    """One mesh in its own space; face f has corners face_offsets[f] to face_offsets[f + 1] − 1."""
 
     name: str
     positions: FloatArray  # [vertices, 3]

@@ -1,3 +1,4 @@
+# mypy: disable-error-code="misc"
 """Komorebi's own panels, where a Cycles user looks for them."""
 
 from __future__ import annotations

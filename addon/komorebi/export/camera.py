@@ -93,9 +93,7 @@ def export_camera(engine: Any, depsgraph: Any, view: str) -> CameraData:
         world_from_object = np.array(camera.matrix_world, np.float64)
     render = depsgraph.scene.render
     width, height = engine.resolution_x, engine.resolution_y
-    clip_from_camera = projection(
-        lens, width, height, render.pixel_aspect_x, render.pixel_aspect_y
-    )
+    clip_from_camera = projection(lens, width, height, render.pixel_aspect_x, render.pixel_aspect_y)
     return CameraData(
         kind=KINDS[lens.kind],
         clip_from_world=clip_from_camera @ camera_from_world(world_from_object),

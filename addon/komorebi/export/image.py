@@ -29,7 +29,8 @@ def export_image(node: Any, warn: Callable[[str], None]) -> EnvironmentImage | N
         return None
     space = _color_space(image, warn)
     if image.source in {"FILE", "SEQUENCE"} and image.packed_file is None and not image.is_dirty:
-        return EnvironmentImage(name_of(image), path=_file(image, node.image_user), color_space=space)
+        path = _file(image, node.image_user)
+        return EnvironmentImage(name_of(image), path=path, color_space=space)
     if image.source == "TILED":
         warn("tiles (UDIM) are not supported yet, only the first is rendered")
     elif image.source == "MOVIE":

@@ -17,10 +17,11 @@ def source(socket: Any) -> Any | None:
         if node.type == "REROUTE":
             socket = node.inputs[0]
         elif node.mute:
-            through = [k.from_socket for k in node.internal_links if k.to_socket == link.from_socket]
-            if not through:
+            inner = (k for k in node.internal_links if k.to_socket == link.from_socket)
+            through = next(inner, None)
+            if through is None:
                 return None
-            socket = through[0]
+            socket = through.from_socket
         else:
             return link.from_socket
     return None
