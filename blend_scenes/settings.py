@@ -1,0 +1,151 @@
+"""Scenes that hold one kind of setting each: shading, view layers, border, cameras, small and
+large scales."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import bpy
+from common import (
+    add_box,
+    add_camera,
+    add_mesh,
+    add_rectangle,
+    add_sphere,
+    empty_scene,
+    link,
+    set_world,
+)
+from mathutils import Matrix, Vector
+
+
+def wavy(name: str, at: tuple[float, float, float], smooth: bool) -> bpy.types.Object:
+    """A drum of twelve sides with a lid: its edges show how normals are shared."""
+    sides = 12
+    ring = [(math.cos(math.tau * k / sides), math.sin(math.tau * k / sides)) for k in range(sides)]
+    vertices = [(0.7 * x, 0.7 * y, z) for z in (0.0, 0.9) for x, y in ring]
+    faces: list[tuple[int, ...]] = [
+        (k, (k + 1) % sides, sides + (k + 1) % sides, sides + k) for k in range(sides)
+    ]
+    faces.append(tuple(range(sides, 2 * sides)))
+    thing = add_mesh(name, vertices, faces, smooth)
+    thing.location = at
+    return thing
+
+
+def shading() -> None:
+    """Flat, smooth, auto smooth, partly smooth and marked-sharp drums side by side, and one with
+    set normals."""
+    empty_scene(320, 160)
+    add_rectangle("Ground", (-20.0, -20.0, 0.0), (40.0, 0.0, 0.0), (0.0, 40.0, 0.0))
+    wavy("Flat", (-4.5, 0.0, 0.0), False)
+    wavy("Smooth", (-2.7, 0.0, 0.0), True)
+    auto = wavy("Auto smooth", (-0.9, 0.0, 0.0), True)
+    auto.data.use_auto_smooth, auto.data.auto_smooth_angle = True, math.radians(40.0)
+    part = wavy("Lid flat", (0.9, 0.0, 0.0), True)
+    part.data.polygons[-1].use_smooth = False
+    sharp = wavy("Sharp edges", (2.7, 0.0, 0.0), True)
+    for edge in sharp.data.edges:
+        edge.use_edge_sharp = all(v >= 12 for v in edge.vertices)
+    set_by_hand = wavy("Set normals", (4.5, 0.0, 0.0), True)
+    mesh = set_by_hand.data
+    mesh.use_auto_smooth, mesh.auto_smooth_angle = True, math.pi
+    up = [
+        (mesh.vertices[loop.vertex_index].co.normalized() + Vector((0.0, 0.0, 0.5))).normalized()
+        for loop in mesh.loops
+    ]
+    mesh.normals_split_custom_set(up)
+    add_camera((0.0, -9.0, 4.5), (0.0, 0.0, 0.3), lens=30.0)
+    set_world()
+
+
+def view_layers() -> None:
+    """Two view layers, each without the other's collection: a ball in one, a box in the other."""
+    scene = empty_scene(240, 160)
+    add_rectangle("Ground", (-9.0, -9.0, 0.0), (18.0, 0.0, 0.0), (0.0, 18.0, 0.0))
+    scene.view_layers[0].name = "Ball"
+    other = scene.view_layers.new("Box")
+    for name, thing in (
+        ("Ball", add_sphere("Ball", 0.8, (-0.6, 0.0, 0.8), level=5)),
+        ("Box", add_box("Box", (1.2, 1.2, 1.2), (0.7, 0.0, 0.6))),
+    ):
+        collection = bpy.data.collections.new(name)
+        scene.collection.children.link(collection)
+        scene.collection.objects.unlink(thing)
+        link(thing, collection)
+    scene.view_layers["Ball"].layer_collection.children["Box"].exclude = True
+    other.layer_collection.children["Ball"].exclude = True
+    add_camera((2.5, -5.0, 3.0), (0.0, 0.0, 0.5))
+    set_world()
+
+
+def steps_and_ball() -> None:
+    """Something with no symmetry to point a camera at."""
+    add_rectangle("Ground", (-30.0, -30.0, 0.0), (60.0, 0.0, 0.0), (0.0, 60.0, 0.0))
+    for k in range(5):
+        add_box(f"Step {k}", (1.0, 0.4, 0.2 * (k + 1)), (-0.5, 0.4 * k, 0.1 * (k + 1)))
+    add_sphere("Ball", 0.5, (0.8, 0.2, 0.5), level=5)
+
+
+def border() -> None:
+    """A render border that crops, with a shifted lens and pixels that are not square."""
+    scene = empty_scene(320, 200)
+    steps_and_ball()
+    camera = add_camera((3.0, -4.0, 2.5), (0.2, 0.5, 0.5), lens=42.0)
+    camera.data.shift_x, camera.data.shift_y = 0.12, -0.07
+    scene.render.pixel_aspect_x = 1.4
+    scene.render.use_border = scene.render.use_crop_to_border = True
+    scene.render.border_min_x, scene.render.border_max_x = 0.21, 0.83
+    scene.render.border_min_y, scene.render.border_max_y = 0.13, 0.77
+    set_world()
+
+
+def orthographic() -> None:
+    """An orthographic camera with vertical fit, clipping that cuts the scene, and a transparent
+    film."""
+    scene = empty_scene(180, 240)
+    steps_and_ball()
+    camera = add_camera((3.0, -4.0, 2.5), (0.2, 0.5, 0.5), ortho_scale=3.2)
+    camera.data.sensor_fit, camera.data.clip_start, camera.data.clip_end = "VERTICAL", 4.2, 8.0
+    scene.render.film_transparent = True
+    set_world((0.7, 0.8, 1.0), 1.5)
+
+
+def scaled(factor: float, offset: float) -> None:
+    """The same things `factor` times as large, `offset` metres away from the origin along each
+    axis."""
+    empty_scene(240, 160)
+    steps_and_ball()
+    camera = add_camera((3.0, -4.0, 2.5), (0.2, 0.5, 0.5))
+    camera.data.clip_start, camera.data.clip_end = 0.1 * factor, 100.0 * factor
+    move = Matrix.Translation((offset, offset, offset)) @ Matrix.Scale(factor, 4)
+    for thing in bpy.context.scene.objects:
+        place = move @ Matrix.LocRotScale(thing.location, thing.rotation_euler, None)
+        thing.matrix_world = (
+            Matrix.LocRotScale(place.translation, thing.rotation_euler, None)
+            if thing.type == "CAMERA"
+            else place
+        )
+    set_world()
+
+
+def tiny() -> None:
+    """Everything a thousand times smaller: no distance in the tracer is absolute."""
+    scaled(1e-3, 0.0)
+
+
+def huge() -> None:
+    """Everything a thousand times larger."""
+    scaled(1e3, 0.0)
+
+
+def far_away() -> None:
+    """Ten kilometres from the origin along every axis: world space must start elsewhere."""
+    scaled(1.0, 1e4)
+
+
+SCENES: dict[str, Callable[[], None]] = {
+    scene.__name__: scene
+    for scene in (shading, view_layers, border, orthographic, tiny, huge, far_away)
+}

@@ -1,0 +1,105 @@
+"""The settings of each engine under which both compute the same integral."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+from compare.inside.settle import require, settle, settle_all
+
+CLAY = (0.8, 0.8, 0.8)
+
+
+def set_cycles(scene: Any, samples: int) -> None:
+    """Cycles on the CPU: zero bounces, box filter, and nothing that biases or stops early."""
+    if not hasattr(scene, "cycles"):
+        raise RuntimeError(
+            "this Blender has no Cycles (its add-on is not enabled): compare needs it"
+        )
+    scene.render.engine = "CYCLES"
+    require(scene.cycles, device="CPU", samples=samples, max_bounces=0, pixel_filter_type="BOX")
+    require(
+        scene.cycles, use_adaptive_sampling=False, use_denoising=False, light_sampling_threshold=0.0
+    )
+    require(
+        scene.cycles, sample_clamp_direct=0.0, sample_clamp_indirect=0.0, use_animated_seed=False
+    )
+    settle_all(
+        scene.cycles,
+        diffuse_bounces=0,
+        glossy_bounces=0,
+        transmission_bounces=0,
+        volume_bounces=0,
+        transparent_max_bounces=0,
+        feature_set="SUPPORTED",
+        shading_system=False,
+        film_exposure=1.0,
+        film_transparent_glass=False,
+        use_fast_gi=False,
+        use_camera_cull=False,
+        use_distance_cull=False,
+        use_layer_samples="IGNORE",
+        use_sample_subset=False,
+        sample_offset=0,
+        time_limit=0.0,
+        use_preview_denoising=False,
+        rolling_shutter_type="NONE",
+        texture_limit_render="OFF",
+    )
+
+
+def set_komorebi(scene: Any, samples: int, mode: str) -> None:
+    """Komorebi with every property that the comparison relies on; raises KeyError where one is
+    missing."""
+    if not hasattr(scene, "komorebi"):
+        raise RuntimeError("the add-on komorebi is not enabled in this Blender")
+    scene.render.engine = "KOMOREBI"
+    method = "AMBIENT_OCCLUSION" if mode == "ao" else "WORLD_LIGHT"
+    require(scene.komorebi, method=method, samples=samples, light_samples=1, sample_offset=0)
+    require(
+        scene.komorebi,
+        use_animated_seed=False,
+        ao_distance=0.0,
+        ao_sampling="COSINE",
+        clay_color=CLAY,
+    )
+    require(scene.komorebi, environment_sampling="MIS", pixel_filter="BOX", use_progressive=True)
+    settle_all(
+        scene.komorebi,
+        surface="CLAY",
+        bounces=0,
+        use_adaptive_sampling=False,
+        time_limit=0.0,
+        use_denoising=False,
+    )
+
+
+def set_seed(scene: Any, engine: str, seed: int) -> None:
+    """Another, independent picture of the same scene."""
+    require(scene.cycles if engine == "CYCLES" else scene.komorebi, seed=seed)
+
+
+def clay(mode: str, flat: bool) -> Any:
+    """A white diffuse material (albedo 1 for ambient occlusion); `flat` shades with the geometric
+    normal."""
+    material = bpy.data.materials.new("compare clay")
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+    diffuse, output = (
+        tree.nodes.new("ShaderNodeBsdfDiffuse"),
+        tree.nodes.new("ShaderNodeOutputMaterial"),
+    )
+    diffuse.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0) if mode == "ao" else (*CLAY, 1.0)
+    diffuse.inputs["Roughness"].default_value = 0.0
+    tree.links.new(diffuse.outputs["BSDF"], output.inputs["Surface"])
+    if flat:
+        geometry = tree.nodes.new("ShaderNodeNewGeometry")
+        tree.links.new(geometry.outputs["True Normal"], diffuse.inputs["Normal"])
+    for owner, name in (
+        (material, "displacement_method"),
+        (getattr(material, "cycles", None), "displacement_method"),
+    ):
+        settle(owner, name, "BUMP")
+    return material

@@ -1,0 +1,108 @@
+"""Runs inside Blender: opens a file, prepares it for one engine, renders it at several seeds,
+stores the pixels.
+
+    blender -b --factory-startup --disable-autoexec -P tests/compare/inside/job.py -- JOB.json
+    PYTHON_WITH_BPY tests/compare/inside/job.py -- JOB.json
+
+JOB.json holds: file, engine, mode, samples, seeds, view_layer, flat, longest, world_image, frame,
+out. Written into the folder `out`: pixels.npy, float32 [seed, row, column, RGBA], row 0 at the
+bottom, premultiplied, scene linear; and report.json: notes (what was changed), seconds a picture,
+releases.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+
+from compare.inside import camera, engines, objects, render_settings, world
+
+
+def open_file(path: str) -> list[str]:
+    """Open a .blend without its interface and scripts; complaints about missing parts become
+    notes."""
+    try:
+        bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
+    except RuntimeError as error:
+        if not bpy.data.filepath or not Path(bpy.data.filepath).samefile(path):
+            raise
+        return [f"Blender said while opening: {' '.join(str(error).split())}"]
+    return []
+
+
+def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
+    """Bring the open file into the state that both engines render; returns the scene and what was
+    changed."""
+    scene = bpy.context.scene
+    if job["frame"] is not None:
+        scene.frame_set(job["frame"])
+    notes = render_settings.set_size(scene, job["longest"])
+    render_settings.set_output(scene)
+    layer, more = render_settings.choose_view_layer(scene, job["view_layer"])
+    notes += more + objects.lamps_off() + objects.objects_off() + objects.collections_off(layer)
+    layer.material_override = engines.clay(job["mode"], job["flat"])
+    notes += world.set_world(scene, job["mode"], job["world_image"])
+    scene.frame_set(scene.frame_current)  # the camera bound to a marker, and all drivers
+    depsgraph = layer.depsgraph
+    depsgraph.update()
+    notes += camera.ensure_camera(scene, depsgraph)
+    notes += objects.still_camera(scene.camera) + objects.unsupported_instances(depsgraph)
+    if job["engine"] == "CYCLES":
+        engines.set_cycles(scene, job["samples"])
+    else:
+        engines.set_komorebi(scene, job["samples"], job["mode"])
+    return scene, notes
+
+
+def render(scene: Any, path: Path) -> np.ndarray:
+    """One picture as float32 [row, column, RGBA]."""
+    scene.render.filepath = str(path)
+    bpy.ops.render.render(write_still=True)
+    if not path.is_file():
+        raise RuntimeError(f"Blender wrote no picture {path.name}")
+    image = bpy.data.images.load(str(path), check_existing=False)
+    image.colorspace_settings.name = "Non-Color"
+    width, height = image.size
+    pixels = np.empty(width * height * 4, dtype=np.float32)
+    image.pixels.foreach_get(pixels)
+    bpy.data.images.remove(image)
+    path.unlink()
+    return pixels.reshape(height, width, 4)
+
+
+def main() -> None:
+    """Do the job named on the command line."""
+    job = json.loads(Path(sys.argv[sys.argv.index("--") + 1]).read_text(encoding="utf-8"))
+    out = Path(job["out"])
+    if job["engine"] == "KOMOREBI":
+        import addon_utils
+
+        if addon_utils.enable("komorebi", default_set=False) is None:
+            raise RuntimeError("the add-on komorebi could not be enabled")
+    notes = open_file(job["file"])
+    scene, more = prepare(job)
+    pictures, seconds = [], []
+    for seed in job["seeds"]:
+        engines.set_seed(scene, job["engine"], seed)
+        start = time.perf_counter()
+        pictures.append(render(scene, out / f"seed-{seed}.exr"))
+        seconds.append(time.perf_counter() - start)
+    np.save(out / "pixels.npy", np.stack(pictures))
+    report = {
+        "notes": notes + more,
+        "seconds": seconds,
+        "blender": bpy.app.version_string,
+        "view_layer": next(x.name for x in scene.view_layers if x.use),
+    }
+    (out / "report.json").write_text(json.dumps(report), encoding="utf-8")
+
+
+main()

@@ -1,0 +1,102 @@
+"""Lamps, and what Komorebi does not render yet: switched off in both engines, and listed."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Any
+
+import bpy
+
+from compare.inside.settle import forget_animation, safe_name, settle, settle_all
+
+# Kinds of object that Komorebi does not render yet.
+KINDS = {
+    "CURVES": "hair curves",
+    "POINTCLOUD": "point cloud",
+    "VOLUME": "volume",
+    "GPENCIL": "grease pencil",
+    "GREASEPENCIL": "grease pencil",
+}
+# Flags of objects that Komorebi does not honour yet, with the value that switches them off.
+FLAGS = {
+    "is_holdout": False,
+    "is_shadow_catcher": False,
+    "visible_camera": True,
+    "visible_diffuse": True,
+    "visible_shadow": True,
+}
+
+
+def lamps_off() -> list[str]:
+    """Every lamp at zero power: they stay where they are, since cameras may be aimed at them."""
+    for light in bpy.data.lights:
+        settle(light, "energy", 0.0)
+        if getattr(light, "node_tree", None) is not None:
+            light.use_nodes = False
+    return [f"{len(bpy.data.lights)} lamps"] if bpy.data.lights else []
+
+
+def objects_off() -> list[str]:
+    """Hide objects of kinds and undo flags that Komorebi lacks; shadow-terminator offsets 0
+    everywhere."""
+    found: Counter[str] = Counter()
+    for thing in bpy.data.objects:
+        if thing.type in KINDS:
+            settle(thing, "hide_render", True)
+            found[f"{KINDS[thing.type]} objects"] += 1
+        for flag, off in FLAGS.items():
+            if flag in thing.bl_rna.properties and getattr(thing, flag) != off:
+                settle(thing, flag, off)
+                found[f"objects with {flag} {not off}"] += 1
+        settle_all(
+            getattr(thing, "cycles", None),
+            shadow_terminator_offset=0.0,
+            shadow_terminator_geometry_offset=0.0,
+        )
+        settle_all(
+            thing, shadow_terminator_geometry_offset=0.0, shadow_terminator_shading_offset=0.0
+        )
+        settle_all(getattr(thing, "cycles", None), use_camera_cull=False, use_distance_cull=False)
+    for particles in bpy.data.particles:
+        if particles.type == "HAIR" and particles.render_type == "PATH":
+            settle(particles, "render_type", "NONE")
+            found["hair particle settings"] += 1
+    return [f"{count} {name}" for name, count in sorted(found.items())]
+
+
+def collections_off(layer: Any) -> list[str]:
+    """Undo holdout and indirect-only collections of a view layer."""
+    found: Counter[str] = Counter()
+    waiting = [layer.layer_collection]
+    while waiting:
+        branch = waiting.pop()
+        waiting.extend(branch.children)
+        for flag in ("holdout", "indirect_only"):
+            if getattr(branch, flag):
+                setattr(branch, flag, False)
+                found[f"collections with {flag}"] += 1
+    return [f"{count} {name}" for name, count in sorted(found.items())]
+
+
+def unsupported_instances(depsgraph: Any) -> list[str]:
+    """What geometry nodes make that cannot be switched off: listed, so that a disagreement is
+    understood."""
+    found: Counter[str] = Counter()
+    for instance in depsgraph.object_instances:
+        if instance.is_instance and instance.object.type in KINDS:
+            found[f"{KINDS[instance.object.type]} made by {safe_name(instance.parent)}"] += 1
+    return [f"NOT switched off: {count} {name}" for name, count in sorted(found.items())]
+
+
+def still_camera(camera: Any) -> list[str]:
+    """Depth of field off; a panoramic camera becomes a perspective one."""
+    notes = []
+    data = camera.data
+    if data.dof.use_dof:
+        notes.append("depth of field")
+    settle(data.dof, "use_dof", False)
+    if data.type not in {"PERSP", "ORTHO"}:
+        notes.append(f"camera of type {data.type} made perspective")
+        settle(data, "type", "PERSP")
+    forget_animation(data, "type")
+    return notes
