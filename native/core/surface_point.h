@@ -58,10 +58,10 @@ inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit,
   const Vec3 along_ab = hit.u * ab;
   const Vec3 along_ac = hit.v * ac;
   const Vec3 local = a + along_ab + along_ac;
-  const Vec3 span = glm::abs(ab) + glm::abs(ac);
-  // Rounding of the sum above, and of the triangle test, which works relative to the ray's origin.
+  // Rounding of the sum above; and the next ray's origin, in whose coordinates its triangle test works,
+  // may not sit on the surface when an axis happens to have no rounding (z = 0).
   Vec3 local_error = gamma(5) * (glm::abs(a) + glm::abs(along_ab) + glm::abs(along_ac));
-  local_error += Vec3(gamma(4) * max_abs(span));
+  local_error += Vec3(gamma(2) * max_abs(local));
 
   const Vec3 relative = instance.world_from_local * local;
   SurfacePoint point;
