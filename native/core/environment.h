@@ -155,18 +155,20 @@ struct PatchPosition {
   float z_fraction;  ///< up the patch in z, 0…1
 };
 
+// x limited to 0…last; 0 for a NaN, so that no direction whatever reads outside the map.
+inline float limit(float x, float last) {
+  return x > 0.0f ? (x < last ? x : last) : 0.0f;
+}
+
 inline PatchPosition locate(const EnvironmentView& e, const Vec3& d) {
   const Vec2 uv = equirectangular_from_direction(d);
-  const float x = uv.x * static_cast<float>(e.width) - 0.5f;
-  const float y = uv.y * static_cast<float>(e.height) - 0.5f;
-  const std::int32_t left = floor_to_int(x);
-  const std::int32_t low = floor_to_int(y);
-  const auto columns = static_cast<std::int32_t>(e.width);
-  const auto rows = static_cast<std::int32_t>(e.height);
-  std::int32_t column = left < 0 ? left + columns : left;
-  if (column >= columns) column -= columns;
-  std::int32_t row = low + 1;
-  row = row < 0 ? 0 : row > rows ? rows : row;
+  // half a texel up, so that patches start at whole numbers; column 0 of this is the last one's
+  const auto columns = static_cast<float>(e.width), rows = static_cast<float>(e.height);
+  const float x = limit(uv.x * columns + 0.5f, columns + 0.5f);
+  const float y = limit(uv.y * rows + 0.5f, rows + 0.5f);
+  const auto right = static_cast<std::uint32_t>(x);
+  const auto row = static_cast<std::uint32_t>(y);
+  const std::uint32_t column = right == 0 ? e.width - 1 : right - 1;
 
   // z to double precision next to the poles too: 1 − |z| = r² / (1 + |z|)
   const Vec3d q(d);
@@ -177,8 +179,8 @@ inline PatchPosition locate(const EnvironmentView& e, const Vec3& d) {
   const double z0 = e.row_z[row];
   const double fraction = (z - z0) / (e.row_z[row + 1] - z0);
   const double inside = fraction > 0.0 ? (fraction < 1.0 ? fraction : 1.0) : 0.0;
-  return {environment_patch(e, static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(column)),
-          x - static_cast<float>(left), y - static_cast<float>(low), static_cast<float>(inside)};
+  return {environment_patch(e, row, column), x - static_cast<float>(right),
+          y - static_cast<float>(row), static_cast<float>(inside)};
 }
 
 }  // namespace detail

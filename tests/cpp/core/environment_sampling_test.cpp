@@ -151,6 +151,23 @@ TEST(EnvironmentSampling, EveryPatchIsChosenByItsOwnUnits) {
   }
 }
 
+// All 32 bits count: in a row that a sun rules, columns of a few units of 2^-31 are met.
+TEST(EnvironmentSampling, SmallestPatchesAreMet) {
+  const Environment map = sunny_map(64, 32, 40, 20, 1e12f);
+  const EnvironmentView e = map.view();
+  const std::uint32_t row = 20;  // between texel rows 19 and 20
+  const std::uint32_t* cdf = detail::patch_columns(e, row);
+  const std::uint32_t middle = e.row_cdf[row] + e.row_cdf[row + 1];
+  int small = 0;
+  for (std::uint32_t column = 0; column < 64; ++column) {
+    if (cdf[column + 1] - cdf[column] > 8) continue;
+    ++small;
+    const auto sample = sample_environment(e, {cdf[column] + cdf[column + 1], middle});
+    EXPECT_EQ(detail::locate(e, sample.direction).patch.column, column);
+  }
+  EXPECT_EQ(small, 62);  // all but the two beside the sun
+}
+
 TEST(EnvironmentSampling, DensityIsPositiveWhereverRadianceIs) {
   const Environment maps[] = {
       random_map(32, 16, 1), sunny_map(8, 4, 0, 0, 1.0f, 0.0f), sunny_map(8, 4, 7, 3, 1e-30f, 0.0f),

@@ -183,6 +183,19 @@ TEST(Environment, ConstantColour) {
   EXPECT_EQ(evaluate_environment(e, Vec3(0, 1, 0)).pdf, kInvFourPi);
 }
 
+// No such direction should ever come; if one does, it must not read outside the map.
+TEST(Environment, SenselessDirectionsAreHarmless) {
+  const Environment map = random_map(4, 3, 1);
+  const EnvironmentView e = map.view();
+  const float nan = std::nanf(""), inf = std::numeric_limits<float>::infinity();
+  for (const Vec3 d :
+       {Vec3(0.0f), Vec3(nan), Vec3(inf, 0, -inf), Vec3(0, 0, inf), Vec3(1e-45f, 0, 0)}) {
+    const auto at = detail::locate(e, d);
+    EXPECT_LT(at.patch.column, 4u);
+    EXPECT_LE(at.patch.row, 3u);
+  }
+}
+
 TEST(Environment, RefusesWhatDoesNotFit) {
   EXPECT_THROW(make_map(2, 2, {1, 2, 3}), std::invalid_argument);
   EXPECT_THROW(make_map(0, 2, {}), std::invalid_argument);

@@ -153,6 +153,27 @@ TEST(Sampler, PixelsSeedsAndDimensionsAreDecorrelated) {
   }
 }
 
+// Within a pixel, points of different pairs combine at random: of 4096 samples each cell of a 16 ×
+// 16 grid over one coordinate of each has about 16 (standard deviation 4; the counts depend on each
+// other, so this is no χ² test). Unshuffled, a sixteenth of the cells would have 256, the rest
+// none.
+TEST(Sampler, PairsOfOnePixelAreDecorrelated) {
+  for (std::uint32_t pixel = 0; pixel < 16; ++pixel) {
+    const Sampler sampler(0, pixel, 3);
+    for (const std::uint32_t other : {2u, 4u, 8u, 16u}) {
+      std::vector<int> counts(256, 0);
+      for (std::uint32_t i = 0; i < 4096; ++i) {
+        const std::uint32_t a = sampler.bits_2d(0, i).x, b = sampler.bits_2d(other, i).x;
+        ++counts[(a >> 28) * 16 + (b >> 28)];
+      }
+      for (const int count : counts) {
+        ASSERT_GT(count, 0);
+        ASSERT_LT(count, 40);
+      }
+    }
+  }
+}
+
 // Over pixels, each sample by itself is uniform in the square.
 TEST(Sampler, EachSampleIsUniformOverPixels) {
   constexpr std::uint32_t kSide = 512, kCells = 32;

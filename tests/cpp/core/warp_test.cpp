@@ -82,6 +82,24 @@ TEST_P(Warps, UnitLengthAndDensityPositiveEverywhere) {
   }
 }
 
+// The concentric map has no seam: squares about the middle become rings, corners stay diagonal.
+TEST(CosineHemisphereDisk, IsConcentricAndContinuous) {
+  const auto angle = [](const Vec3& d) { return std::atan2(d.y, d.x) / kPi; };
+  EXPECT_NEAR(angle(cosine_hemisphere_disk({0.75f, 0.75f})), 0.25, 1e-6);
+  EXPECT_NEAR(angle(cosine_hemisphere_disk({0.25f, 0.75f})), 0.75, 1e-6);
+  EXPECT_NEAR(angle(cosine_hemisphere_disk({0.25f, 0.25f})), -0.75, 1e-6);
+  EXPECT_NEAR(angle(cosine_hemisphere_disk({0.5f, 0.75f})), 0.5, 1e-6);
+  EXPECT_EQ(cosine_hemisphere_disk({0.5f, 0.5f}), Vec3(0, 0, 1));
+  constexpr float kStep = 1.0f / 1024.0f;
+  for (float u = 0.05f; u < 0.95f; u += kStep) {
+    for (float v = 0.05f; v < 0.95f; v += kStep) {
+      const Vec3 here = cosine_hemisphere_disk({u, v});
+      ASSERT_LT(glm::length(cosine_hemisphere_disk({u + kStep, v}) - here), 8.0f * kStep);
+      ASSERT_LT(glm::length(cosine_hemisphere_disk({u, v + kStep}) - here), 8.0f * kStep);
+    }
+  }
+}
+
 TEST(Frame, IsOrthonormalAndRightHandedForEveryNormal) {
   testing::RandomBits random(7);
   std::vector<Vec3> normals = {{0, 0, 1},      {0, 0, -1},    {1, 0, 0},       {0, 1, 0},

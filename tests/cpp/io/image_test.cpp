@@ -166,7 +166,11 @@ TEST_F(ImageFiles, ErrorsAreOneSentenceWithTheName) {
         OIIO::TypeDesc::FLOAT);
   fs::copy_file(path("whole.exr"), path("cut.exr"));
   fs::resize_file(path("cut.exr"), fs::file_size(path("cut.exr")) / 2);
-  for (const char* name : {"missing.hdr", "text.hdr", "empty.exr", "cut.exr", "."}) {
+  write(path("whole.hdr"), 64, 64, 3, std::vector<float>(64 * 64 * 3, 0.3f).data(),
+        OIIO::TypeDesc::FLOAT);
+  fs::copy_file(path("whole.hdr"), path("cut.hdr"));
+  fs::resize_file(path("cut.hdr"), fs::file_size(path("cut.hdr")) / 2);
+  for (const char* name : {"missing.hdr", "text.hdr", "empty.exr", "cut.exr", "cut.hdr", "."}) {
     const std::string error = error_of(path(name));
     EXPECT_NE(error.find("\"" + path(name) + "\""), std::string::npos) << name << ": " << error;
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
