@@ -103,20 +103,16 @@ def face_materials(mesh: Any) -> IntArray | None:
 
 @contextmanager
 def mesh_of(obj: Any) -> Iterator[Any]:
-    """The evaluated mesh of `obj`, or None if it has no surface; freed afterwards if it is ours.
+    """The evaluated mesh of an object of type MESH; freed afterwards if it is a copy.
 
     An object in edit mode, or one whose subdivision is left to the graphics card, holds its final
     mesh elsewhere: only `to_mesh` finds it.
     """
-    if obj.type == "MESH" and not _is_deferred(obj):
+    if not _is_deferred(obj):
         yield obj.data
         return
     try:
-        mesh = obj.to_mesh()
-    except RuntimeError:  # a curve or metaball without a surface of its own
-        mesh = None
-    try:
-        yield mesh
+        yield obj.to_mesh()
     finally:
         obj.to_mesh_clear()
 

@@ -15,7 +15,6 @@ from .mesh import export_mesh
 from .names import name_of
 from .visibility import Visibility
 
-SURFACE_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 UNSUPPORTED_TYPES = {
     "CURVES": "hair curves", "POINTCLOUD": "a point cloud", "VOLUME": "a volume",
     "GPENCIL": "grease pencil", "GREASEPENCIL": "grease pencil",
@@ -36,7 +35,7 @@ class _Group:
 def export_instances(engine: Any, depsgraph: Any, data: SceneData) -> None:
     """Fills meshes, instances, object names and what was ignored into `data`."""
     visibility = Visibility(depsgraph)
-    key2mesh: dict[tuple[int, int], int] = {}  # −1: no surface
+    key2mesh: dict[int, int] = {}  # −1: no surface
     object2index: dict[int, int] = {}
     groups: list[_Group] = []
     ignored: Counter[str] = Counter()
@@ -46,15 +45,15 @@ def export_instances(engine: Any, depsgraph: Any, data: SceneData) -> None:
             raise RenderCancelled
         obj = instance.object
         kind = obj.type
-        if kind not in SURFACE_TYPES:
+        # A curve, text, surface or metaball comes twice: as itself, and as the mesh that it makes.
+        if kind != "MESH":
             _note_ignored(engine, obj, kind, instance.show_self, ignored)
             continue
         if not instance.show_self:
             continue
         original = obj.original
         pointer = original.as_pointer()
-        # A mesh is shared by its pointer; other kinds keep their surface on the object.
-        key = (0 if kind == "MESH" else pointer, obj.data.as_pointer())
+        key = obj.data.as_pointer()  # unique while the depsgraph holds the data
         mesh = key2mesh.get(key)
         if mesh is None:
             if engine.test_break():
@@ -86,7 +85,7 @@ def export_instances(engine: Any, depsgraph: Any, data: SceneData) -> None:
 
 def _add_mesh(obj: Any, meshes: list[MeshData]) -> int:
     with compat.mesh_of(obj) as mesh:
-        exported = None if mesh is None else export_mesh(mesh, name_of(obj))
+        exported = export_mesh(mesh, name_of(obj))
     if exported is None:
         return -1
     meshes.append(exported)

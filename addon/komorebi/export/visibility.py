@@ -13,6 +13,7 @@ from ..scene_data import (
     RAY_SHADOW,
 )
 
+NEVER_SEEN = {"LIGHT", "CAMERA"}  # whose flags mean nothing to a ray
 _RAYS = (
     ("visible_camera", RAY_CAMERA),
     ("visible_diffuse", RAY_DIFFUSE),
@@ -26,7 +27,7 @@ class Visibility:
     def __init__(self, depsgraph: Any) -> None:
         self._view_layer = depsgraph.view_layer
         self.matters = _layer_matters(self._view_layer.layer_collection) or any(
-            _object_matters(obj) for obj in depsgraph.objects
+            _object_matters(obj) for obj in depsgraph.objects if obj.type not in NEVER_SEEN
         )
 
     def of(self, instance: Any, original: Any) -> tuple[int, int]:

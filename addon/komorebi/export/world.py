@@ -168,8 +168,9 @@ class _WorldReader:
 
 
 def _default_color(node: Any) -> Color:
-    """The mean of a node's colour inputs or colour ramp, else grey 0.5."""
+    """The mean of a node's colour inputs or colour ramp, else (or when that is black) grey 0.5."""
     if node.type == "VALTORGB":
         return _rgb(np.mean([e.color[:] for e in node.color_ramp.elements], axis=0))
     colors = [s.default_value[:] for s in node.inputs if s.type == "RGBA" and s.enabled]
-    return _rgb(np.mean(colors, axis=0)) if colors else (0.5, 0.5, 0.5)
+    mean = _rgb(np.mean(colors, axis=0)) if colors else BLACK
+    return mean if any(mean) else (0.5, 0.5, 0.5)

@@ -1,0 +1,90 @@
+"""The engine, its properties and its panels, as scripts and users find them."""
+
+import bpy
+import komorebi
+import support
+
+DEFAULTS = {
+    "method": "AMBIENT_OCCLUSION", "samples": 128, "light_samples": 1, "sample_offset": 0, "seed": 0,
+    "use_animated_seed": False, "ao_distance": 0.0, "ao_sampling": "COSINE",
+    "environment_sampling": "MIS", "pixel_filter": "BLACKMAN_HARRIS", "filter_width": 1.5,
+    "use_progressive": True,
+}  # fmt: skip
+ITEMS = {
+    "method": ["AMBIENT_OCCLUSION", "WORLD_LIGHT"],
+    "ao_sampling": ["COSINE", "UNIFORM"],
+    "environment_sampling": ["MIS", "COSINE", "ENVIRONMENT"],
+    "pixel_filter": ["BLACKMAN_HARRIS", "GAUSSIAN", "BOX"],
+}
+
+
+def panels():
+    return bpy.types.Panel.__subclasses__()
+
+
+def test_defaults_are_the_fixed_ones():
+    settings = bpy.data.scenes.new("Fresh").komorebi
+    for name, value in DEFAULTS.items():
+        assert getattr(settings, name) == value, (name, getattr(settings, name))
+    assert all(abs(c - 0.8) < 1e-6 for c in settings.clay_color)
+    for name, items in ITEMS.items():
+        assert [i.identifier for i in settings.bl_rna.properties[name].enum_items] == items
+
+
+def test_engine_can_be_chosen():
+    scene = bpy.context.scene
+    scene.render.engine = "KOMOREBI"
+    assert scene.render.engine == "KOMOREBI"
+    labels = {
+        getattr(e, "bl_idname", ""): getattr(e, "bl_label", "")
+        for e in bpy.types.RenderEngine.__subclasses__()
+    }
+    assert labels["KOMOREBI"] == "Komorebi"
+
+
+def test_own_panels_show_in_no_other_engine():
+    own = [p for p in panels() if p.__name__.startswith("KOMOREBI_")]
+    assert len(own) >= 9
+    for panel in own:
+        assert panel.COMPAT_ENGINES == {"KOMOREBI"}, panel
+
+
+def test_blenders_panels_are_inherited():
+    ours = {p.__name__ for p in panels() if "KOMOREBI" in getattr(p, "COMPAT_ENGINES", ())}
+    for name in ("DATA_PT_lens", "DATA_PT_camera", "RENDER_PT_format", "RENDER_PT_color_management",
+                 "WORLD_PT_context_world", "VIEWLAYER_PT_layer", "OBJECT_PT_visibility"):  # fmt: skip
+        assert name in ours, name
+    for name in ("DATA_PT_camera_dof", "VIEWLAYER_PT_layer_passes", "RENDER_PT_freestyle"):
+        assert name not in ours, name
+
+
+def test_unregister_takes_everything_out_and_register_brings_it_back():
+    before = {p.__name__ for p in panels() if "KOMOREBI" in getattr(p, "COMPAT_ENGINES", ())}
+    komorebi.unregister()
+    try:
+        left = {p.__name__ for p in panels() if "KOMOREBI" in getattr(p, "COMPAT_ENGINES", ())}
+        assert all(name.startswith("KOMOREBI_") for name in left), left
+        assert not [name for name in dir(bpy.types) if name.startswith("KOMOREBI_")]
+        assert not hasattr(bpy.types.Scene, "komorebi")
+        for name in dir(bpy.app.handlers):
+            functions = getattr(bpy.app.handlers, name)
+            if isinstance(functions, list):
+                assert not [f for f in functions if f.__module__.startswith("komorebi")], name
+        komorebi.unregister()  # a second time changes nothing
+    finally:
+        komorebi.register()
+        komorebi.register()
+    after = {p.__name__ for p in panels() if "KOMOREBI" in getattr(p, "COMPAT_ENGINES", ())}
+    assert before == after
+
+
+def test_works_without_cycles(folder):
+    done = support.script(
+        "import addon_utils, bpy\naddon_utils.disable('cycles')\n"
+        "assert not hasattr(bpy.types.Scene, 'cycles')\n"
+        "support.small(bpy.context.scene)\n"
+        f"bpy.context.scene.render.filepath = {str(folder / 'picture.png')!r}\n"
+        "bpy.ops.render.render(write_still=True)\n",
+        folder,
+    )
+    assert done.code == 0 and support.pictures(folder) == ["picture.png"], done
