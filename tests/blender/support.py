@@ -143,7 +143,8 @@ def process(arguments, timeout=120, **environment):
     start = time.monotonic()
     done = subprocess.run(
         [str(a) for a in arguments], env=full, timeout=timeout, check=False, text=True,
-        errors="replace", stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
+        errors="replace", stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
     )  # fmt: skip
     return Finished(done.returncode, done.stdout, time.monotonic() - start)
 
@@ -208,3 +209,13 @@ def link_environment(image, world=None):
     background = next(n for n in tree.nodes if n.type == "BACKGROUND")
     tree.links.new(node.outputs["Color"], background.inputs["Color"])
     return node
+
+
+def resident_bytes():
+    """Memory that this process holds (Linux)."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+def slowness():
+    """How much longer than promised a busy test machine may take: KOMOREBI_TEST_SLOWNESS."""
+    return float(os.environ.get("KOMOREBI_TEST_SLOWNESS", "1"))

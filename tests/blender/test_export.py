@@ -48,7 +48,8 @@ def test_dtypes_and_sharing():
     copy = bpy.data.objects["Cube"].copy()
     bpy.context.scene.collection.objects.link(copy)
     data = support.exported()
-    assert len(data.meshes) == 1 and len(data.instances) == 1
+    assert len(data.meshes) == 1
+    assert len(data.instances) == 1
     assert counts(data) == {"Cube": 1, "Cube.001": 1}
     assert data.ignored == {"lamp": 1}
 
@@ -58,12 +59,18 @@ def test_arrays_are_what_the_core_wants():
 
     bpy.data.objects["Cube"].data.polygons[0].use_smooth = True
     mesh = export_mesh(bpy.data.meshes["Cube"], "Cube")
-    assert mesh.positions.dtype == np.float32 and mesh.positions.shape == (8, 3)
-    assert mesh.corner_verts.dtype == np.int32 and mesh.corner_verts.shape == (24,)
-    assert mesh.face_offsets.dtype == np.int32 and mesh.face_offsets[-1] == 24
-    assert mesh.corner_normals.dtype == np.float32 and mesh.corner_normals.shape == (24, 3)
-    assert mesh.smooth_faces.dtype == np.bool_ and mesh.smooth_faces.sum() == 1
-    assert mesh.tri2corner is None and mesh.face_materials is None
+    assert mesh.positions.dtype == np.float32
+    assert mesh.positions.shape == (8, 3)
+    assert mesh.corner_verts.dtype == np.int32
+    assert mesh.corner_verts.shape == (24,)
+    assert mesh.face_offsets.dtype == np.int32
+    assert mesh.face_offsets[-1] == 24
+    assert mesh.corner_normals.dtype == np.float32
+    assert mesh.corner_normals.shape == (24, 3)
+    assert mesh.smooth_faces.dtype == np.bool_
+    assert mesh.smooth_faces.sum() == 1
+    assert mesh.tri2corner is None
+    assert mesh.face_materials is None
 
 
 def test_same_arrays_through_every_route():
@@ -102,8 +109,8 @@ def test_ngons_come_from_blender():
     from komorebi.export.mesh import export_mesh
 
     mesh = bpy.data.meshes.new("Ngons")
-    star = [(np.cos(a) * r, np.sin(a) * r, 0) for a, r in
-            zip(np.linspace(0, 2 * np.pi, 10, endpoint=False), [1, 0.4] * 5)]  # fmt: skip
+    angles = np.linspace(0, 2 * np.pi, 10, endpoint=False)
+    star = [(np.cos(a) * r, np.sin(a) * r, 0) for a, r in zip(angles, [1, 0.4] * 5, strict=True)]
     mesh.from_pydata([*star, (0, 0, 1)], [], [tuple(range(10)), (0, 1, 10), (2, 3, 4, 10)])
     data = export_mesh(mesh, "Ngons")
     assert np.array_equal(triangles_of_core(data), loop_triangles(mesh))
@@ -234,7 +241,8 @@ def test_visibility_reaches_the_core():
 
     cube = bpy.data.objects["Cube"]
     plain = support.exported().instances[0]
-    assert plain.mask is None and plain.flags is None
+    assert plain.mask is None
+    assert plain.flags is None
     cube.visible_camera = False
     cube.is_holdout = True
     group = support.exported().instances[0]

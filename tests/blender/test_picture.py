@@ -1,5 +1,7 @@
 """Pictures end to end: what lands in Blender's files."""
 
+# ruff: noqa: PT017, PT018 (no pytest inside Blender)
+
 import bpy
 import numpy as np
 import support
@@ -43,7 +45,8 @@ def test_film_alpha(folder):
     scene.render.film_transparent = True
     clear = support.render(folder, "clear")
     alpha = clear[:, :, 3]
-    assert alpha[0, 0] == 0 and alpha[24, 32] == 1
+    assert alpha[0, 0] == 0
+    assert alpha[24, 32] == 1
     edges = (alpha > 0) & (alpha < 1)
     assert edges.any()
     assert (clear[alpha == 0] == 0).all(), "alpha is premultiplied"
@@ -112,7 +115,9 @@ def test_pixel_aspect_and_percentage(folder):
     alpha = support.render(folder)[:, :, 3]
     assert alpha.shape == (60, 60)
     # 10 pixels a metre across, pixels twice as wide as high: 20 a metre upwards.
-    assert alpha[30, 20] == 1 and alpha[30 - 30, 20] == 1 and alpha[30, 40] == 0
+    assert alpha[30, 20] == 1
+    assert alpha[30 - 30, 20] == 1
+    assert alpha[30, 40] == 0
 
 
 def test_depth_and_normal(folder):
@@ -123,7 +128,8 @@ def test_depth_and_normal(folder):
     camera.location, camera.rotation_euler = (0, 0, 8), (0, 0, 0)
     planes = passes_of_a_render(folder)
     depth, normal = planes["Depth"][:, :, 0], planes["Normal"]
-    assert depth.shape == (48, 64) and normal.shape == (48, 64, 3)
+    assert depth.shape == (48, 64)
+    assert normal.shape == (48, 64, 3)
     assert depth[0, 0] == np.float32(1e10), "background as in Cycles"
     top = depth[18:30, 26:38]
     assert np.allclose(top, 7.0, atol=1e-5), "along the axis, not along the ray"
@@ -171,7 +177,8 @@ def test_ortho_and_persp_show_the_same_center(folder):
     scene.camera.data.type = "ORTHO"
     scene.camera.data.ortho_scale = 7
     alpha = support.render(folder)[:, :, 3]
-    assert alpha[24, 32] == 1 and alpha[0, 0] == 0
+    assert alpha[24, 32] == 1
+    assert alpha[0, 0] == 0
 
 
 def test_clip_distances_cut_the_scene(folder):

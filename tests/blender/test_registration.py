@@ -1,12 +1,14 @@
 """The engine, its properties and its panels, as scripts and users find them."""
 
+# ruff: noqa: PT017, PT018 (no pytest inside Blender)
+
 import bpy
 import komorebi
 import support
 
 DEFAULTS = {
-    "method": "AMBIENT_OCCLUSION", "samples": 128, "light_samples": 1, "sample_offset": 0, "seed": 0,
-    "use_animated_seed": False, "ao_distance": 0.0, "ao_sampling": "COSINE",
+    "method": "AMBIENT_OCCLUSION", "samples": 128, "light_samples": 1, "sample_offset": 0,
+    "seed": 0,    "use_animated_seed": False, "ao_distance": 0.0, "ao_sampling": "COSINE",
     "environment_sampling": "MIS", "pixel_filter": "BLACKMAN_HARRIS", "filter_width": 1.5,
     "use_progressive": True,
 }  # fmt: skip
@@ -16,6 +18,11 @@ ITEMS = {
     "environment_sampling": ["MIS", "COSINE", "ENVIRONMENT"],
     "pixel_filter": ["BLACKMAN_HARRIS", "GAUSSIAN", "BOX"],
 }
+
+INHERITED = (
+    "DATA_PT_lens", "DATA_PT_camera", "RENDER_PT_format", "RENDER_PT_color_management",
+    "WORLD_PT_context_world", "VIEWLAYER_PT_layer", "OBJECT_PT_visibility",
+)  # fmt: skip
 
 
 def panels():
@@ -46,13 +53,12 @@ def test_own_panels_show_in_no_other_engine():
     own = [p for p in panels() if p.__name__.startswith("KOMOREBI_")]
     assert len(own) >= 9
     for panel in own:
-        assert panel.COMPAT_ENGINES == {"KOMOREBI"}, panel
+        assert {"KOMOREBI"} == panel.COMPAT_ENGINES, panel
 
 
 def test_blenders_panels_are_inherited():
     ours = {p.__name__ for p in panels() if "KOMOREBI" in getattr(p, "COMPAT_ENGINES", ())}
-    for name in ("DATA_PT_lens", "DATA_PT_camera", "RENDER_PT_format", "RENDER_PT_color_management",
-                 "WORLD_PT_context_world", "VIEWLAYER_PT_layer", "OBJECT_PT_visibility"):  # fmt: skip
+    for name in INHERITED:
         assert name in ours, name
     for name in ("DATA_PT_camera_dof", "VIEWLAYER_PT_layer_passes", "RENDER_PT_freestyle"):
         assert name not in ours, name

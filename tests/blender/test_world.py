@@ -1,5 +1,7 @@
 """Worlds: colours, environment maps, their rotation, and what stands in for the rest."""
 
+# ruff: noqa: PT017, PT018 (no pytest inside Blender)
+
 import math
 
 import bpy
@@ -37,7 +39,8 @@ def test_background_colour_and_strength():
     background().inputs["Color"].default_value = (0.1, 0.2, 0.4, 1)
     background().inputs["Strength"].default_value = 2.5
     data, sentences = exported()
-    assert np.allclose(data.color, (0.25, 0.5, 1.0)) and not sentences
+    assert np.allclose(data.color, (0.25, 0.5, 1.0))
+    assert not sentences
 
 
 def test_no_world_is_black_and_a_plain_one_its_colour():
@@ -113,7 +116,8 @@ def test_mapping_matrix_is_blenders_euler():
     expected = np.array(mathutils.Euler(euler).to_matrix())
     assert np.allclose(mapping.euler_matrix(euler), expected, atol=1e-6)
     turn, exact = mapping.nearest_rotation(expected * 3.0)
-    assert exact and np.allclose(turn, expected, atol=1e-6)
+    assert exact
+    assert np.allclose(turn, expected, atol=1e-6)
     _, exact = mapping.nearest_rotation(expected @ np.diag([1, 2, 1]))
     assert not exact
 
@@ -158,7 +162,8 @@ def test_byte_images_are_made_linear(folder):
     image.save()
     node.image = bpy.data.images.load(str(path))
     data, _ = exported()
-    assert data.image.path and data.image.color_space == "SRGB"
+    assert data.image.path
+    assert data.image.color_space == "SRGB"
     seen = (middle_colours(folder)[0][1] + 1) / 2
     assert np.allclose(seen, linear, rtol=1e-3), seen
 
@@ -182,7 +187,8 @@ def test_colour_and_strength_scale_the_light():
     node = support.link_environment(direction_map())
     background().inputs["Strength"].default_value = 3.0
     data, _ = exported()
-    assert data.strength == 3.0 and data.image.pixels.shape == (32, 64, 3)
+    assert data.strength == 3.0
+    assert data.image.pixels.shape == (32, 64, 3)
     value = bpy.context.scene.world.node_tree.nodes.new("ShaderNodeValue")
     value.outputs[0].default_value = 0.25
     bpy.context.scene.world.node_tree.links.new(value.outputs[0], background().inputs["Strength"])
@@ -217,10 +223,12 @@ def test_a_map_behind_unsupported_nodes_is_still_found():
     tree.links.new(environment.outputs["Color"], hue.inputs["Color"])
     tree.links.new(hue.outputs["Color"], background().inputs["Color"])
     data, sentences = exported()
-    assert data.image is not None and len(sentences) == 1
+    assert data.image is not None
+    assert len(sentences) == 1
     hue.mute = True  # then it does nothing, in Cycles too
     data, sentences = exported()
-    assert data.image is not None and not sentences
+    assert data.image is not None
+    assert not sentences
 
 
 def test_mix_shader_and_volume():

@@ -1,0 +1,256 @@
+"""The process around the render: its lines, its end, cancelling, memory, warnings."""
+
+# ruff: noqa: PT017, PT018 (no pytest inside Blender)
+
+import re
+import sys
+
+import bpy
+import numpy as np
+import support
+
+
+def test_progress_lines(folder):
+    """`Fra:`, `Saved:` and `Time:` as farms read them, with sample, tile, time left and memory."""
+    scene = bpy.context.scene
+    bpy.ops.mesh.primitive_monkey_add()
+    support.small(scene, size=(320, 240), samples=100000)
+    file = support.save(folder)
+    text = f"""
+import bpy, sys
+bpy.ops.wm.open_mainfile(filepath={str(file)!r})
+from komorebi import driver
+passed = [0]
+original = driver._run_session
+class Slow:
+    "The session, ended after some polls, so that the test need not wait for the samples."
+    def __init__(self, session): self.session = session
+    def __getattr__(self, name): return getattr(self.session, name)
+    def wait(self, timeout):
+        passed[0] += 1
+        if passed[0] == 60: self.session.cancel()
+        return self.session.wait(timeout)
+driver._run_session = lambda engine, session, *rest: original(engine, Slow(session), *rest)
+bpy.context.scene.render.filepath = {str(folder / "picture.png")!r}
+bpy.ops.render.render(write_still=True)
+"""
+    done = support.script(text, folder)
+    assert done.code == 0, done
+    lines = [k for k in done.output.splitlines() if k.startswith("Fra:") and "Sample" in k]
+    assert lines, done
+    for line in lines:
+        assert re.search(r"Fra:1 Mem:\S+ .*\| Time:\S+ \| ViewLayer \| Sample \d+/100000 \|", line)
+        assert "Memory" in line
+    assert all("Tile " in k and "Remaining " in k for k in lines[:-1]), lines
+    assert "Without 1 lamp" in lines[-1], "what the method leaves out is in the statistics"
+    assert "Saved: '" in done.output
+    assert "Time: " in done.output
+    assert len(lines) < 20, "a log must not drown"
+
+
+CANCEL = """
+import bpy, os, signal, threading, time, sys
+scene = bpy.context.scene
+bpy.ops.mesh.primitive_monkey_add()
+support.small(scene, size=(640, 480), samples=1 << 20)
+scene.render.filepath = {picture!r}
+def press():
+    global pressed
+    time.sleep(1.0)
+    pressed = time.monotonic()
+    os.kill(os.getpid(), signal.SIGINT)
+from komorebi import driver
+thread = threading.Thread(target=press)
+original = driver._run_session
+def run(engine, session, *rest):
+    thread.start()
+    try:
+        original(engine, session, *rest)
+    finally:
+        print("SAMPLES", session.progress()["fraction"], "CANCEL", time.monotonic() - pressed)
+driver._run_session = run
+try:
+    bpy.ops.render.render(write_still=True)
+except RuntimeError as error:
+    print("RAISED", error)
+"""
+
+
+def test_cancel_takes_less_than_100_ms(folder):
+    done = support.script(CANCEL.format(picture=str(folder / "picture.png")), folder, timeout=60)
+    taken = float(re.search(r"CANCEL (\S+)", done.output).group(1))
+    assert taken < 0.1 * support.slowness(), done
+    assert 0 <= float(re.search(r"SAMPLES (\S+)", done.output).group(1)) < 1
+
+
+def test_cancelled_picture_keeps_what_is_done():
+    """Blender's answer to test_break turned to True after some polls; tiles stay."""
+    from komorebi import driver
+
+    planes = []
+
+    class Breaking:
+        def __init__(self, engine):
+            self.engine, self.polls = engine, 0
+
+        def __getattr__(self, name):
+            return getattr(self.engine, name)
+
+        def test_break(self):
+            self.polls += 1
+            return self.polls > 3
+
+    original_run, original_set = driver._run_session, driver.ResultWriter._write
+
+    def run(engine, *rest):
+        original_run(Breaking(engine), *rest)
+
+    def write(self, session, tile, passes):
+        planes.append(session.read("Combined", *tile))
+        original_set(self, session, tile, passes)
+
+    driver._run_session, driver.ResultWriter._write = run, write
+    try:
+        support.small(bpy.context.scene, size=(320, 240), samples=1 << 20)
+        bpy.ops.render.render()
+    finally:
+        driver._run_session, driver.ResultWriter._write = original_run, original_set
+    assert len(planes) == 1
+    assert planes[0].shape == (240, 320, 4)
+    assert (planes[0][:, :, 3] > 0).mean() > 0.9, "refined as a whole, so all is there"
+
+
+def test_memory_stays_flat_over_50_renders():
+    bpy.ops.mesh.primitive_monkey_add()
+    monkey = bpy.context.object
+    monkey.modifiers.new("Subdivision", "SUBSURF").render_levels = 3
+    plane = support.add_object("Emitter", bpy.data.meshes["Cube"])
+    plane.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    settings = plane.particle_systems[0].settings
+    settings.type, settings.count = "HAIR", 300
+    settings.render_type, settings.instance_object = "OBJECT", monkey
+    sizes = []
+    for index in range(50):
+        monkey.location.x = index  # something new each time
+        bpy.ops.render.render()
+        sizes.append(support.resident_bytes())
+    # The allocator keeps and returns some MB as it likes: the least of ten renders tells.
+    growth = min(sizes[40:]) - min(sizes[10:20])
+    assert growth < 6 << 20, f"{growth >> 10} kB in 30 renders: {[s >> 20 for s in sizes[::5]]}"
+
+
+def test_module_ends_by_itself_within_5_s(folder):
+    if not support.IS_MODULE:
+        raise support.Skip("for Blender as a Python module only")
+    endings = {
+        "nothing": "",
+        "render": "import bpy\nsupport.small(bpy.context.scene)\nbpy.ops.render.render()\n",
+        "error": (
+            "import bpy\nsupport.small(bpy.context.scene)\n"
+            "bpy.context.scene.camera.data.type = 'PANO'\n"
+            "try: bpy.ops.render.render()\nexcept RuntimeError: pass\n"
+        ),
+        "direct": "import komorebi\nkomorebi.unregister()\nkomorebi.register()\n",
+    }
+    for name, text in endings.items():
+        done = support.script(text + "import time; print('END', time.time())\n", folder, timeout=30)
+        assert done.code == 0, (name, done)
+        assert done.seconds < 5 * support.slowness(), (name, done)
+
+
+def test_registering_directly_ends_too(folder):
+    """`komorebi.register()` without add-on machinery."""
+    if not support.IS_MODULE:
+        raise support.Skip("for Blender as a Python module only")
+    import komorebi
+
+    path = folder / "direct.py"
+    path.write_text(
+        f"import bpy, sys\nsys.path[:0] = {sys.path!r}\nimport komorebi\nkomorebi.register()\n"
+        "bpy.context.scene.render.engine = 'KOMOREBI'\nbpy.context.scene.komorebi.samples = 1\n"
+        "bpy.context.scene.render.resolution_percentage = 5\nbpy.ops.render.render()\n"
+    )
+    assert komorebi.__file__
+    done = support.process([sys.executable, path], timeout=30)
+    assert done.code == 0 and done.seconds < 5 * support.slowness(), done
+
+
+def test_each_warning_once_an_animation_and_a_count(folder):
+    scene = bpy.context.scene
+    scene.render.use_motion_blur = True
+    scene.camera.data.dof.use_dof = True
+    scene.frame_end = 3
+    file = support.save(folder)
+    output = folder / "picture_"
+    if support.IS_MODULE:
+        done = support.blender_render(file, output, "1..3")
+    else:
+        done = support.process([
+            bpy.app.binary_path, "-b", "--factory-startup", file, "--addons", "komorebi",
+            "-E", "KOMOREBI", "-o", output, "-a",
+        ])  # fmt: skip
+    assert done.code == 0 and len(support.pictures(folder)) == 3, done
+    assert done.output.count("Warning: Komorebi: motion blur") == 1, done
+    assert done.output.count("depth of field") == 1, done
+    assert "Komorebi: 2 warnings, 6 times in 3 frames" in done.output, done
+
+
+def test_threads_of_the_command_line(folder):
+    """-t reaches the core; the picture does not change."""
+    file = support.save(folder)
+    for threads in ("1", "2"):
+        extra = ("-t", threads)
+        done = support.blender_render(file, folder / f"t{threads}_", extra=extra)
+        assert done.code == 0, done
+    one, two = (support.read(folder / f"t{n}_0001.png") for n in "12")
+    assert np.array_equal(one, two)
+
+
+def test_persistent_data_reuses_meshes_and_never_shows_old_ones(folder):
+    from komorebi import cache
+
+    scene = bpy.context.scene
+    scene.render.use_persistent_data = True
+    scene.render.film_transparent = True
+    cube = bpy.data.objects["Cube"]
+    cache.clear()
+    first = support.render(folder, "first")
+    assert cache.entry_count() == 1
+    before = cache.misses
+    cube.location.x = 0.5
+    moved = support.render(folder, "moved")
+    assert cache.misses == before, "a moved object's mesh is not built again"
+    assert (moved != first).any()
+    for vertex in cube.data.vertices:
+        vertex.co *= 0.5
+    cube.data.update()
+    smaller = support.render(folder, "smaller")
+    assert cache.misses == before + 1
+    assert smaller[:, :, 3].sum() < 0.5 * moved[:, :, 3].sum()
+    scene.render.use_persistent_data = False
+    support.render(folder, "last")
+    assert cache.entry_count() == 0, "nothing is kept unless Persistent Data asks for it"
+
+
+def test_dump(folder):
+    path = folder / "scene.komorebi"
+    assert bpy.ops.komorebi.dump(filepath=str(path)) == {"FINISHED"}
+    assert path.stat().st_size > 100
+    other = folder / "other.komorebi"
+    done = support.blender_render(
+        support.save(folder), folder / "picture_", KOMOREBI_DUMP=str(other)
+    )
+    assert done.code == 0 and other.stat().st_size > 100, done
+    assert support.pictures(folder) == ["picture_0001.png"]
+
+
+def test_stereo_renders_both_eyes(folder):
+    scene = bpy.context.scene
+    scene.render.use_multiview = True
+    scene.render.film_transparent = True
+    scene.camera.data.stereo.interocular_distance = 1.0
+    with support.captured("driver.export_scene") as calls:
+        bpy.ops.render.render()
+    assert len(calls) == 2
+    left, right = (data.camera.clip_from_world for _, data in calls)
+    assert not np.allclose(left, right)
