@@ -1,0 +1,115 @@
+#include "render/dump.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <stdexcept>
+
+#include "io/array_file.h"
+#include "support/scenes.h"
+
+namespace komorebi::testing {
+namespace {
+
+class Dump : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    path_ = (std::filesystem::temp_directory_path() /
+             ("komorebi_dump_" + std::string(test->name()) + ".komorebi")).string();
+  }
+  void TearDown() override { std::remove(path_.c_str()); }
+
+  static std::shared_ptr<Scene> scene() {
+    const auto ball = sphere(12, {4000, 0, 1}, 1.0, true).mesh();
+    const auto ground = quad({3990, -9, 0}, {20, 0, 0}, {0, 18, 0}).mesh();
+    auto made = make_scene({{ground}, {ball, glm::scale(Mat4d(1.0), Vec3d(1, -1, 1))}},
+                           camera_at({4005, -4, 3}, {4000, 0, 0.5}, 40, 30));
+    std::vector<float> texels(3 * 16 * 8, 0.25f);
+    texels[100] = 50.0f;
+    const Mat3d turn(glm::rotate(Mat4d(1.0), 0.5, Vec3d(0, 0, 1)));
+    made->set_world_environment(std::make_shared<Environment>("sky", 16, 8, texels), 1.5, turn);
+    return made;
+  }
+
+  static Settings settings() {
+    Settings s;
+    s.method = Method::kWorldLight;
+    s.samples = 4;
+    s.clay_color = Vec3(0.7f, 0.6f, 0.5f);
+    s.has_region = true;
+    s.region = {2, 3, 38, 27};
+    return s;
+  }
+
+  std::string bytes() const {
+    std::ifstream in(path_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  void write(const std::string& bytes) const {
+    std::ofstream(path_, std::ios::binary) << bytes;
+  }
+
+  std::string path_;
+};
+
+TEST_F(Dump, RendersTheSamePicture) {
+  const auto original = committed(scene());
+  write_dump(path_, *original, settings());
+  const DumpedRender read = read_dump(path_, shared_pool(), Cancel());
+  EXPECT_EQ(render(committed(read.scene), read.settings), render(original, settings()));
+}
+
+TEST_F(Dump, OfADumpIsTheSameFile) {
+  write_dump(path_, *scene(), settings());
+  const std::string first = bytes();
+  const DumpedRender read = read_dump(path_, shared_pool(), Cancel());
+  write_dump(path_, *read.scene, read.settings);
+  EXPECT_EQ(bytes(), first);
+}
+
+TEST_F(Dump, CutShortAnywhereIsRefused) {
+  write_dump(path_, *scene(), settings());
+  const std::string whole = bytes();
+  for (std::size_t length = 0; length < whole.size(); length += 1 + whole.size() / 97) {
+    write(whole.substr(0, length));
+    EXPECT_THROW(read_dump(path_, shared_pool(), Cancel()), std::runtime_error) << length;
+  }
+  write(whole + "x");
+  EXPECT_THROW(read_dump(path_, shared_pool(), Cancel()), std::runtime_error);
+}
+
+/// Damage of any kind gives a sentence or a scene, never a crash (the sanitizers watch).
+TEST_F(Dump, DamagedFilesAreRefusedOrRender) {
+  write_dump(path_, *scene(), settings());
+  const std::string whole = bytes();
+  std::mt19937 random(1);
+  int refused = 0;
+  for (int i = 0; i < 300; ++i) {
+    std::string damaged = whole;
+    for (int k = 0; k < 4; ++k) damaged[random() % damaged.size()] = static_cast<char>(random());
+    write(damaged);
+    try {
+      read_dump(path_, shared_pool(), Cancel()).scene->commit(shared_pool(), Cancel());
+    } catch (const std::exception& error) {
+      EXPECT_GT(std::string(error.what()).size(), 10u);
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 50);
+}
+
+TEST_F(Dump, NamesTheFileThatIsNotThere) {
+  try {
+    read_dump("/nowhere/scene.komorebi", shared_pool(), Cancel());
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("/nowhere/scene.komorebi"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace komorebi::testing
