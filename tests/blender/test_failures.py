@@ -1,6 +1,6 @@
 """Every failure ends `blender -b` with a non-zero code, one sentence, and no picture."""
 
-# ruff: noqa: PT017, PT018 (no pytest inside Blender)
+# ruff: noqa: PT018 (no pytest inside Blender)
 
 import bpy
 import support

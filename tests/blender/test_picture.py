@@ -1,6 +1,6 @@
 """Pictures end to end: what lands in Blender's files."""
 
-# ruff: noqa: PT017, PT018 (no pytest inside Blender)
+# ruff: noqa: PT018 (no pytest inside Blender)
 
 import bpy
 import numpy as np

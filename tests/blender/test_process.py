@@ -1,6 +1,6 @@
 """The process around the render: its lines, its end, cancelling, memory, warnings."""
 
-# ruff: noqa: PT017, PT018 (no pytest inside Blender)
+# ruff: noqa: PT018 (no pytest inside Blender)
 
 import re
 import sys
@@ -134,7 +134,7 @@ def test_memory_stays_flat_over_50_renders():
         monkey.location.x = index  # something new each time
         bpy.ops.render.render()
         sizes.append(support.resident_bytes())
-    # The allocator keeps and returns some MB as it likes: the least of ten renders tells.
+    # One render more or less holds a few MB at its end: the least of ten renders tells.
     growth = min(sizes[40:]) - min(sizes[10:20])
     assert growth < 6 << 20, f"{growth >> 10} kB in 30 renders: {[s >> 20 for s in sizes[::5]]}"
 

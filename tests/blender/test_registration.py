@@ -1,6 +1,6 @@
 """The engine, its properties and its panels, as scripts and users find them."""
 
-# ruff: noqa: PT017, PT018 (no pytest inside Blender)
+# ruff: noqa: PT018 (no pytest inside Blender)
 
 import bpy
 import komorebi
