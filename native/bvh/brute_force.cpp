@@ -14,6 +14,7 @@ template <bool kAny>
 Hit test_everything(const SceneView& scene, const Ray& ray) {
   Closest closest(ray);
   const SlabRay world = make_world_slab(ray);
+  if (!is_usable(world)) return closest.hit;
   for (std::uint32_t index = 0; index < scene.instance_count; ++index) {
     LocalRay local;
     if (!enter_instance(scene.instances[index], ray, world, &local)) continue;

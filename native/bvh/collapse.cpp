@@ -28,27 +28,51 @@ class Collapser {
     return node & kLeafBit ? boxes_[topology_.order[node & ~kLeafBit]] : topology_.bounds[node];
   }
 
+  /// Leaves that the subtree of `node` will have, counted up to `most`.
+  std::uint32_t leaves(std::uint32_t node, std::uint32_t most) const {
+    if (is_leaf(node) || most <= 1) return 1;
+    const std::uint32_t left = leaves(topology_.left[node], most - 1);
+    return left >= most ? left : left + leaves(topology_.right[node], most - left);
+  }
+
   /// The children of the wide node that stands for `node`.
+  ///
+  /// Subtrees that fit into one wide node are kept whole: opening them early would leave nodes with
+  /// two or three children further down, which are most of the memory and of the visits.
   Children children(std::uint32_t node) const {
     Children result;
-    result.node[result.count++] = node;
-    float area[kWidth] = {half_area(box(node))};
+    std::uint32_t size[kWidth];  // leaves below, or kWidth + 1 for more than fit into one node
+    float area[kWidth];
+    const auto set = [&](std::uint32_t i, std::uint32_t child) {
+      result.node[i] = child;
+      size[i] = leaves(child, kWidth + 1);
+      area[i] = half_area(box(child));
+    };
+    const auto open = [&](std::uint32_t i) {
+      const std::uint32_t opened = result.node[i];
+      set(i, topology_.left[opened]);
+      set(result.count++, topology_.right[opened]);
+    };
+    set(result.count++, node);
     while (result.count < kWidth) {
-      int largest = -1;
+      // Of those that need nodes below anyway, the largest.
+      std::uint32_t best = kWidth;
       for (std::uint32_t i = 0; i < result.count; ++i) {
-        if (is_leaf(result.node[i])) continue;
-        if (largest < 0 || area[i] > area[largest]) largest = static_cast<int>(i);
+        if (size[i] > kWidth && (best == kWidth || area[i] > area[best])) best = i;
       }
-      if (largest < 0) break;
-      const std::uint32_t opened = result.node[largest];
-      const std::uint32_t right = topology_.right[opened];
-      result.node[largest] = topology_.left[opened];
-      area[largest] = half_area(box(result.node[largest]));
-      result.node[result.count] = right;
-      area[result.count++] = half_area(box(right));
+      // Else the smallest that fits here as a whole, which saves its node.
+      if (best == kWidth) {
+        for (std::uint32_t i = 0; i < result.count; ++i) {
+          if (size[i] < 2 || result.count + size[i] - 1 > kWidth) continue;
+          if (best == kWidth || size[i] < size[best]) best = i;
+        }
+      }
+      if (best == kWidth) break;
+      open(best);
     }
-    for (std::uint32_t i = 0; i < result.count; ++i)
+    for (std::uint32_t i = 0; i < result.count; ++i) {
       result.inner += is_leaf(result.node[i]) ? 0u : 1u;
+    }
     return result;
   }
 

@@ -50,6 +50,7 @@ template <bool kAny, class Filter>
 Hit trace_scalar(const SceneView& scene, const Ray& ray, const Filter& filter) {
   Closest closest(ray);
   const SlabRay world = make_world_slab(ray);
+  if (!is_usable(world)) return closest.hit;
   const auto visit_instances = [&](std::uint32_t first, std::uint32_t count) {
     for (std::uint32_t i = first; i < first + count; ++i) {
       const std::uint32_t index = scene.leaf2instance[i];

@@ -196,6 +196,7 @@ template <bool kAny, class Filter>
 HWY_INLINE Hit trace(const SceneView& scene, const Ray& ray, const Filter& filter) {
   Closest closest(ray);
   const SlabRay world = make_world_slab(ray);
+  if (!is_usable(world)) return closest.hit;
   InstanceVisitor<kAny, Filter> visit{scene, ray, world, filter, closest};
   walk<kAny>(scene.tree, world, Interval{ray.t_min, ray.t_max}, visit);
   return closest.hit;

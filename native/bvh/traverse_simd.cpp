@@ -10,9 +10,9 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bvh/traverse_simd.cpp"
 // clang-format off: the order of these three matters
+#include "bvh/traverse_simd-inl.h"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "bvh/traverse_simd-inl.h"
 // clang-format on
 
 #if HWY_ONCE

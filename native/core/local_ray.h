@@ -53,6 +53,7 @@ inline bool enter_instance(const InstanceView& instance, const Ray& ray, const S
   const Vec3 error = spread * kPadding + instance.local_error;
   const Vec3 shift = error + Vec3(max_abs(origin) * kPadding);
   local->slab = make_slab_ray(origin, direction, shift);
+  if (!is_usable(local->slab)) return false;
   local->shear = make_shear_ray(origin, direction);
   local->t_min = ray.t_min;
   local->t_max = ray.t_max;

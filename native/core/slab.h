@@ -51,6 +51,18 @@ inline SlabRay make_slab_ray(const Vec3& origin, const Vec3& direction, const Ve
   return ray;
 }
 
+/// Whether the box test means anything: false for a ray with infinities or numbers that are none,
+/// or so far out that it would even seem to meet the empty box. Such a ray hits nothing.
+inline bool is_usable(const SlabRay& ray) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const float near = ray.near_origin[axis], far = ray.far_origin[axis];
+    const float inverse = ray.inverse[axis] < 0.0f ? -ray.inverse[axis] : ray.inverse[axis];
+    if (!(near > -1e37f && near < 1e37f && far > -1e37f && far < 1e37f)) return false;
+    if (!(inverse > 0.0f && inverse <= kFloatMax)) return false;
+  }
+  return true;
+}
+
 /// The part of `range` that lies in the box: Ize 2013 with the padding moved into box and ray.
 /// Only subtraction, a product with a constant, min and max: all monotone in the box's planes, so
 /// the interval of a box contains the interval of every box inside it, exactly and not up to

@@ -4,10 +4,14 @@
 
 namespace komorebi::testing {
 
-/// Reads the v and f lines of an OBJ.
-inline TriangleMesh read_obj(const std::string& bytes) {
+/// Reads the v and f lines of an OBJ; lines may be continued with a backslash.
+inline TriangleMesh read_obj(std::string bytes) {
+  for (std::size_t at = bytes.find('\\'); at != std::string::npos; at = bytes.find('\\', at)) {
+    const std::size_t end = std::min(bytes.find('\n', at), bytes.size() - 1);
+    std::fill(bytes.begin() + std::ptrdiff_t(at), bytes.begin() + std::ptrdiff_t(end) + 1, ' ');
+  }
   TriangleMesh mesh;
-  std::vector<std::int64_t> corners;
+  std::vector<std::vector<std::int64_t>> faces;
   for (std::size_t at = 0; at < bytes.size();) {
     const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
     const std::string line = bytes.substr(at, end - at);
@@ -16,7 +20,7 @@ inline TriangleMesh read_obj(const std::string& bytes) {
       Words words(line.c_str() + 2);
       for (int k = 0; k < 3; ++k) mesh.vtx2xyz.push_back(static_cast<float>(words.number()));
     } else if (line.rfind("f ", 0) == 0) {
-      corners.clear();
+      std::vector<std::int64_t>& corners = faces.emplace_back();
       for (const char* c = line.c_str() + 1; *c != '\0';) {
         while (std::isspace(static_cast<unsigned char>(*c))) ++c;
         if (*c == '\0') break;
@@ -25,9 +29,9 @@ inline TriangleMesh read_obj(const std::string& bytes) {
                                     : static_cast<std::int64_t>(mesh.vtx2xyz.size() / 3) + index);
         while (*c != '\0' && !std::isspace(static_cast<unsigned char>(*c))) ++c;
       }
-      mesh.add_polygon(corners);
     }
   }
+  for (const auto& corners : faces) mesh.add_polygon(corners);
   mesh.drop_not_finite();
   return mesh;
 }
