@@ -1,5 +1,6 @@
 #include "render/scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -136,9 +137,7 @@ void Scene::place(const InstanceInput& input, ThreadPool& pool, const Cancel& ca
   instances_.push_back(instance);
 }
 
-void Scene::commit(ThreadPool& pool, const Cancel& cancel) {
-  require_open();
-  committed_ = true;
+void Scene::choose_origin() {
   Vec3d lo(1e300), hi(-1e300);
   for (const InstanceInput& input : inputs_) {
     const Mesh& mesh = *meshes_[input.mesh];
@@ -152,7 +151,21 @@ void Scene::commit(ThreadPool& pool, const Cancel& cancel) {
       hi = glm::max(hi, world);
     }
   }
-  origin_ = lo.x <= hi.x ? 0.5 * (lo + hi) : Vec3d(0.0);
+  if (!(lo.x <= hi.x)) return;  // nothing to see: the origin stays
+  origin_ = 0.5 * (lo + hi);
+  if (!has_camera_) return;
+  const Vec3d extent = hi - lo;
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  if (!(longest > 0.0)) return;
+  const double step = std::exp2(std::floor(std::log2(longest / 256.0)));
+  const Vec3d eye = make_camera(camera_desc_, Vec3d(0.0)).origin;
+  origin_ = step * glm::round(glm::clamp(eye, lo, hi) / step);
+}
+
+void Scene::commit(ThreadPool& pool, const Cancel& cancel) {
+  require_open();
+  committed_ = true;
+  choose_origin();
 
   traced_meshes_ = meshes_;
   instances_.reserve(inputs_.size());

@@ -25,8 +25,10 @@ struct InstanceInput {
 
 /// Meshes, instances, world and camera; filled, then committed once, then read only.
 ///
-/// Commit moves world space to the middle of the scene (in double), so that floats are fine
-/// around the geometry wherever in the world the artist has put it.
+/// Commit moves world space (in double), so that floats are fine where the picture is, wherever in
+/// the world the artist has put it: to the point of the scene's bounds nearest to the camera, on a
+/// grid of 1/256 of their length, so that a camera that moves a little does not move the world.
+/// Without a camera, to their middle.
 class Scene {
  public:
   Scene();
@@ -68,6 +70,7 @@ class Scene {
 
  private:
   void require_open() const;
+  void choose_origin();
   void place(const InstanceInput& input, ThreadPool& pool, const Cancel& cancel);
 
   bool committed_ = false;
