@@ -101,6 +101,15 @@ HWY_INLINE unsigned meet_block(const TriangleBlock& block, const ShearRay& ray) 
   return bits;
 }
 
+/// Asks for the cache lines of an object that will be read soon: a third of the time of a ray is
+/// waiting for memory.
+template <std::size_t kBytes>
+HWY_INLINE void fetch_soon(const void* object) {
+  for (std::size_t offset = 0; offset < kBytes; offset += 64) {
+    __builtin_prefetch(static_cast<const char*>(object) + offset);
+  }
+}
+
 /// Visits the leaves of a wide tree that the ray meets in `range` and not behind the closest hit;
 /// for closest hits near children first. Stops, and returns true, when `visit` does.
 template <bool kAny, class Visit>
@@ -133,6 +142,11 @@ HWY_INLINE bool walk(const TreeView& tree, const SlabRay& slab, Interval range, 
           }
         }
         stack[place] = {begins[i], node.child[i], node.count[i]};
+        if (node.count[i] > 0) {
+          visit.prefetch(node.child[i]);
+        } else {
+          fetch_soon<sizeof(WideNode)>(tree.nodes + node.child[i]);
+        }
       }
     }
     do {
@@ -153,6 +167,7 @@ struct BlockVisitor {
   Closest& closest;
 
   float limit() const { return closest.limit; }
+  void prefetch(std::uint32_t leaf) const { fetch_soon<sizeof(TriangleBlock)>(blocks + leaf); }
 
   bool operator()(std::uint32_t leaf, std::uint32_t) const {
     const TriangleBlock& block = blocks[leaf];
@@ -177,6 +192,7 @@ struct InstanceVisitor {
   Closest& closest;
 
   float limit() const { return closest.limit; }
+  void prefetch(std::uint32_t) const {}
 
   bool operator()(std::uint32_t first, std::uint32_t count) const {
     for (std::uint32_t i = first; i < first + count; ++i) {

@@ -9,10 +9,11 @@
   (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bvh/traverse_simd.cpp"
-// clang-format off: the order of these three matters
-#include "bvh/traverse_simd-inl.h"
+// The order of these three matters.
+// clang-format off
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
+#include "bvh/traverse_simd-inl.h"
 // clang-format on
 
 #if HWY_ONCE
