@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from typing import Any
 
 from . import compat
@@ -28,9 +29,9 @@ class ResultWriter:
         self._pending: set[Tile] = set()
         self._next = 0.0
 
-    def show(self, session: Any, tiles: list[Tile]) -> None:
+    def show(self, session: Any, tiles: Sequence[Sequence[int]]) -> None:
         """Brings finished tiles to the screen; holds them back while that would cost too much."""
-        self._pending.update(tiles)
+        self._pending.update((x, y, width, height) for x, y, width, height in tiles)
         start = time.monotonic()
         if not self._pending or start < self._next:
             return

@@ -111,7 +111,9 @@ class _WorldReader:
         if node.type == "TEX_SKY":
             color = sky_color(node)
             shown = ", ".join(f"{c:.3g}" for c in color)
-            self._warn(node, f"not supported yet, rendered as its mean colour {shown}")
+            self._warn(
+                node, f"not supported yet, rendered as the mean colour of such skies, {shown}"
+            )
             return WorldData(color=_times(color, strength))
         value = node.outputs[0].default_value
         color = (value, value, value) if node.type == "VALUE" else _rgb(value)

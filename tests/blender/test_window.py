@@ -1,0 +1,99 @@
+"""F12 in a window (under Xvfb): tiles appear as they finish.
+
+Esc cannot be pressed from outside without an X client; test_process.py cancels by Ctrl-C instead.
+"""
+
+import contextlib
+import os
+import re
+import shutil
+import subprocess
+
+import bpy
+import support
+
+# Runs in a Blender with a window: starts a render and watches it.
+WATCH = """
+import bpy, sys, time
+import komorebi.result
+scene = bpy.context.scene
+bpy.ops.mesh.primitive_monkey_add()
+support.small(scene, size=(320, 240), samples={samples})
+state = dict(shown=0, started=None)
+write = komorebi.result.ResultWriter._write
+def counted(self, session, tile, passes):
+    write(self, session, tile, passes)
+    state["shown"] += 1
+    print("SHOWN", tile, len(passes), flush=True)
+komorebi.result.ResultWriter._write = counted
+def guarded():
+    try:
+        return step()
+    except BaseException:
+        import os, traceback
+        traceback.print_exc()
+        sys.stderr.flush()
+        os._exit(3)  # an exception in a timer does not end Blender
+def step():
+    window = bpy.context.window_manager.windows[0]
+    if state["started"] is None:
+        state["started"] = time.monotonic()
+        with bpy.context.temp_override(window=window):
+            bpy.ops.render.render("INVOKE_DEFAULT")
+        return 0.05
+    if bpy.app.is_job_running("RENDER"):
+        return 0.01
+    settings = scene.render.image_settings
+    settings.file_format, settings.color_depth = "OPEN_EXR", "32"
+    bpy.data.images["Render Result"].save_render({picture!r})
+    print("DONE", state["shown"], flush=True)
+    bpy.ops.wm.quit_blender()
+bpy.app.timers.register(guarded, first_interval=1.0, persistent=True)
+"""
+
+
+@contextlib.contextmanager
+def screen():
+    """A display of its own; ends with the test."""
+    program = shutil.which("Xvfb")
+    if program is None:
+        raise support.Skip("Xvfb is not installed")
+    reading, writing = os.pipe()
+    server = subprocess.Popen(
+        [program, "-displayfd", str(writing), "-screen", "0", "960x540x24", "-nolisten", "tcp"],
+        pass_fds=(writing,), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    os.close(writing)
+    try:
+        with os.fdopen(reading) as numbers:
+            yield ":" + numbers.readline().strip()
+    finally:
+        server.terminate()
+        server.wait()
+
+
+def watch(folder, samples):
+    if support.IS_MODULE:
+        raise support.Skip("Blender as a Python module has no window")
+    picture = folder / "picture.exr"
+    path = folder / "watch.py"
+    path.write_text(
+        f"import sys; sys.path.insert(0, {str(support.HERE)!r})\nimport support; support.enable()\n"
+        + WATCH.format(samples=samples, picture=str(picture))
+    )
+    with screen() as display:
+        done = support.process(
+            [bpy.app.binary_path, "--factory-startup", "--no-window-focus", "-p", "0", "0", "960",
+             "540", "--python-exit-code", "3", "-P", path],
+            timeout=120, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1",
+        )  # fmt: skip
+    assert "DONE" in done.output, done
+    return done, support.read(picture)
+
+
+def test_tiles_appear_while_the_frame_renders(folder):
+    done, pixels = watch(folder, samples=64)
+    shown = re.findall(r"SHOWN (\(.*\)) (\d)", done.output)
+    assert len(shown) >= 3, done
+    assert shown[-1][0] == "(0, 0, 320, 240)", done
+    assert (pixels[:, :, 3] == 1).all()
