@@ -142,10 +142,12 @@ HWY_INLINE bool walk(const TreeView& tree, const SlabRay& slab, Interval range, 
           }
         }
         stack[place] = {begins[i], node.child[i], node.count[i]};
-        if (node.count[i] > 0) {
-          visit.prefetch(node.child[i]);
-        } else {
-          fetch_soon<sizeof(WideNode)>(tree.nodes + node.child[i]);
+        if constexpr (kAny) {  // rays for closest hits are coherent: theirs are in the cache
+          if (node.count[i] > 0) {
+            visit.prefetch(node.child[i]);
+          } else {
+            fetch_soon<sizeof(WideNode)>(tree.nodes + node.child[i]);
+          }
         }
       }
     }

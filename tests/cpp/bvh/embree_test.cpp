@@ -1,11 +1,11 @@
 // Hit by hit against Embree, a tracer that is not ours. Its robust triangle test rounds otherwise
 // than ours, so rays that pass within float distance of a silhouette, or meet two surfaces that
 // close together, may be answered otherwise; all else may not.
-#include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "support/embree_scene.h"
 #include "support/ray_kinds.h"
 #include "support/shared_meshes.h"
 #include "support/test_scene.h"
@@ -13,64 +13,11 @@
 namespace komorebi {
 namespace {
 
+using testing::EmbreeScene;
 using testing::RayList;
 using testing::RayMaker;
 using testing::TestScene;
 using testing::TriangleMesh;
-
-class EmbreeScene {
- public:
-  explicit EmbreeScene(const TriangleMesh& mesh) {
-    device_ = rtcNewDevice("threads=2");
-    scene_ = rtcNewScene(device_);
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    float* xyz = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                             RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                             mesh.vtx2xyz.size() / 3));
-    std::copy(mesh.vtx2xyz.begin(), mesh.vtx2xyz.end(), xyz);
-    auto* indices = static_cast<std::uint32_t*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                3 * sizeof(std::uint32_t), mesh.triangle_count()));
-    std::copy(mesh.tri2vtx.begin(), mesh.tri2vtx.end(), indices);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
-  }
-  ~EmbreeScene() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-  EmbreeScene(const EmbreeScene&) = delete;
-  EmbreeScene& operator=(const EmbreeScene&) = delete;
-
-  Hit intersect(const Ray& ray) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRayHit query{};
-    query.ray = {ray.origin.x,
-                 ray.origin.y,
-                 ray.origin.z,
-                 ray.t_min,
-                 ray.direction.x,
-                 ray.direction.y,
-                 ray.direction.z,
-                 0.0f,
-                 ray.t_max,
-                 ~0u,
-                 0,
-                 0};
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_, &context, &query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Hit{};
-    return Hit{query.ray.tfar, query.hit.u, query.hit.v, 0, query.hit.primID};
-  }
-
- private:
-  RTCDevice device_;
-  RTCScene scene_;
-};
 
 Vec3d corner(const TriangleMesh& mesh, std::uint32_t triangle, std::size_t which) {
   const float* p = &mesh.vtx2xyz[3 * std::size_t{mesh.tri2vtx[3 * std::size_t{triangle} + which]}];
