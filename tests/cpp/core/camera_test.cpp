@@ -152,13 +152,14 @@ TEST(Camera, RaysPassThroughTheirPixelWithinAThousandth) {
       for (const double depth : {s.clip_start, 1.0, 10.0, 100.0, s.clip_end}) {
         if (depth < s.clip_start || depth > s.clip_end) continue;
         const Projected at = project(s, along(ray, (depth - s.clip_start) * per_depth, origin));
-        // the origin is a float: half a unit in its last place, seen from `depth`, comes on top
+        // The origin is a float: half a unit in the last place of each coordinate comes on top,
+        // seen from `depth` and, away from the axis, at a slant. Parallel rays keep their
+        // direction's rounding, however far they run.
         const double pixel = 2.0 * std::min(f.half_width / s.width, f.half_height / s.height) *
                              (s.orthographic ? 1.0 : depth);
-        // and parallel rays keep their direction's rounding, however far they run
         const double run = s.orthographic ? depth - s.clip_start : 0.0;
         const double grid = 0x1p-24 * (double{max_abs(ray.origin)} + run) / pixel;
-        const double tolerance = 1e-3 + 2.0 * grid;
+        const double tolerance = 1e-3 + std::sqrt(3.0) * per_depth * grid;
         ASSERT_NEAR(at.x, film.x, tolerance) << "depth " << depth;
         ASSERT_NEAR(at.y, film.y, tolerance) << "depth " << depth;
       }

@@ -26,7 +26,7 @@ Vec3 direction_at(double u, double v) {
 }
 
 TEST(Environment, AxesLieWhereBlenderDrawsThem) {
-  // −Y is the left quarter's end, +X the middle, +Y three quarters back: u = 1/2 − atan2(y, x)/2π
+  // from the left edge: −X, +Y at a quarter, +X in the middle, −Y at three quarters, −X again
   const auto uv = [](Vec3 d) { return equirectangular_from_direction(d); };
   EXPECT_FLOAT_EQ(uv({1, 0, 0}).x, 0.5f);
   EXPECT_FLOAT_EQ(uv({0, 1, 0}).x, 0.25f);
