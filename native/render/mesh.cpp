@@ -14,6 +14,16 @@ std::size_t bytes(const std::vector<T>& v) {
   return v.capacity() * sizeof(T);
 }
 
+/// body(i) for every i in [0, count), in parallel; throws Cancelled soon after the flag is raised.
+template <class Body>
+void for_each_index(std::size_t count, ThreadPool& pool, const Cancel& cancel, const Body& body) {
+  constexpr std::size_t kGrain = 1 << 16;
+  pool.for_each_chunk(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    if (cancel.raised()) throw Cancelled();
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
 /// The middle of the bounds, one float an axis.
 Vec3 middle(std::span<const float> vtx2xyz) {
   Vec3d lo(1e300), hi(-1e300);
@@ -27,9 +37,15 @@ Vec3 middle(std::span<const float> vtx2xyz) {
 
 /// True when no vertex loses a bit by moving to `origin`.
 bool moves_exactly(std::span<const float> vtx2xyz, const Vec3& origin) {
-  for (std::size_t i = 0; i < vtx2xyz.size(); ++i) {
-    const double exact = double{vtx2xyz[i]} - double{origin[static_cast<int>(i % 3)]};
-    if (exact != double{static_cast<float>(exact)}) return false;
+  const auto exact = [](float value, float by) {
+    const double moved = double{value} - double{by};
+    return moved == double{static_cast<float>(moved)};
+  };
+  for (std::size_t i = 0; i + 2 < vtx2xyz.size(); i += 3) {
+    if (!(exact(vtx2xyz[i], origin.x) && exact(vtx2xyz[i + 1], origin.y) &&
+          exact(vtx2xyz[i + 2], origin.z))) {
+      return false;
+    }
   }
   return true;
 }
@@ -41,12 +57,15 @@ void Mesh::take_positions(std::span<const float> vtx2xyz) {
   const Vec3 origin = moves_exactly(vtx2xyz, candidate) ? candidate : Vec3(0.0f);
   origin_ = Vec3d(origin);
   vtx2xyz_.resize(vtx2xyz.size());
-  for (std::size_t i = 0; i < vtx2xyz.size(); ++i) {
-    vtx2xyz_[i] = vtx2xyz[i] - origin[static_cast<int>(i % 3)];
+  for (std::size_t i = 0; i + 2 < vtx2xyz.size(); i += 3) {
+    vtx2xyz_[i] = vtx2xyz[i] - origin.x;
+    vtx2xyz_[i + 1] = vtx2xyz[i + 1] - origin.y;
+    vtx2xyz_[i + 2] = vtx2xyz[i + 2] - origin.z;
   }
 }
 
-void Mesh::take_normals(const MeshInput& in, std::span<const std::int32_t> tri2face) {
+void Mesh::take_normals(const MeshInput& in, std::span<const std::int32_t> tri2face,
+                        ThreadPool& pool, const Cancel& cancel) {
   const auto face = [&](std::size_t tri) { return static_cast<std::size_t>(tri2face[tri]); };
   const std::size_t triangles = tri2face.size();
   const auto smooth = [](std::uint8_t s) { return s != 0; };
@@ -54,30 +73,36 @@ void Mesh::take_normals(const MeshInput& in, std::span<const std::int32_t> tri2f
       in.face2smooth.empty() || std::any_of(in.face2smooth.begin(), in.face2smooth.end(), smooth);
   if (!in.corner2normal.empty() && any_smooth) {
     corner2normal_.resize(9 * triangles);
-    for (std::size_t k = 0; k < 3 * triangles; ++k) {
+    for_each_index(3 * triangles, pool, cancel, [&](std::size_t k) {
       const float* normal = &in.corner2normal[3 * static_cast<std::size_t>(tri2corner_[k])];
       std::copy_n(normal, 3, &corner2normal_[3 * k]);
-    }
+    });
     if (!std::all_of(in.face2smooth.begin(), in.face2smooth.end(), smooth)) {
       tri2smooth_.resize(triangles);
-      for (std::size_t t = 0; t < triangles; ++t) tri2smooth_[t] = in.face2smooth[face(t)];
+      for_each_index(triangles, pool, cancel,
+                     [&](std::size_t t) { tri2smooth_[t] = in.face2smooth[face(t)]; });
     }
   }
   const auto other_slot = [](std::int32_t slot) { return slot != 0; };
   if (std::any_of(in.face2material.begin(), in.face2material.end(), other_slot)) {
     tri2material_.resize(triangles);
-    for (std::size_t t = 0; t < triangles; ++t) {
+    for_each_index(triangles, pool, cancel, [&](std::size_t t) {
       tri2material_[t] = static_cast<std::uint16_t>(in.face2material[face(t)]);
-    }
+    });
   }
 }
 
 std::shared_ptr<const Mesh> Mesh::build(const MeshInput& in, Builder builder, ThreadPool& pool,
                                         const Cancel& cancel) {
+  const auto stop_if_cancelled = [&] {
+    if (cancel.raised()) throw Cancelled();
+  };
   check_mesh(in);
+  stop_if_cancelled();
   std::shared_ptr<Mesh> mesh(new Mesh);
   mesh->name_ = in.name;
   mesh->take_positions(in.vtx2xyz);
+  stop_if_cancelled();
 
   std::vector<std::int32_t> tri2face(in.tri2face.begin(), in.tri2face.end());
   mesh->tri2corner_.assign(in.tri2corner.begin(), in.tri2corner.end());
@@ -86,13 +111,13 @@ std::shared_ptr<const Mesh> Mesh::build(const MeshInput& in, Builder builder, Th
     mesh->tri2corner_ = std::move(t.tri2corner);
     tri2face = std::move(t.tri2face);
   }
+  stop_if_cancelled();
   mesh->tri2vtx_.resize(mesh->tri2corner_.size());
-  for (std::size_t k = 0; k < mesh->tri2corner_.size(); ++k) {
+  for_each_index(mesh->tri2corner_.size(), pool, cancel, [&](std::size_t k) {
     const auto corner = static_cast<std::size_t>(mesh->tri2corner_[k]);
     mesh->tri2vtx_[k] = static_cast<std::uint32_t>(in.corner2vtx[corner]);
-  }
-  mesh->take_normals(in, tri2face);
-  if (cancel.raised()) throw Cancelled();
+  });
+  mesh->take_normals(in, tri2face, pool, cancel);
   mesh->tree_ = build_mesh_tree(mesh->vtx2xyz_, mesh->tri2vtx_, builder, pool, cancel);
   return mesh;
 }

@@ -56,7 +56,8 @@ class Mesh {
  private:
   Mesh() = default;
   void take_positions(std::span<const float> vtx2xyz);
-  void take_normals(const MeshInput& input, std::span<const std::int32_t> tri2face);
+  void take_normals(const MeshInput& input, std::span<const std::int32_t> tri2face,
+                    ThreadPool& pool, const Cancel& cancel);
 
   std::string name_;
   Vec3d origin_{0.0};
