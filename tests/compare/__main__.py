@@ -24,7 +24,7 @@ def compare(chosen: argparse.Namespace, scene: Path, mode: str) -> dict[str, Any
         out / f"second-{second.engine.lower()}",
         chosen.reuse and second.engine == "CYCLES",
     )
-    verdict = statistics.judge(a.pixels, b.pixels)
+    verdict = statistics.judge(a.pixels, b.pixels, a.bent)
     image = out / "side-by-side.png"
     full = picture.side_by_side(
         image, a.pixels.mean(axis=0), b.pixels.mean(axis=0), verdict.disagrees
@@ -40,7 +40,8 @@ def compare(chosen: argparse.Namespace, scene: Path, mode: str) -> dict[str, Any
         "samples": chosen.samples,
         "seeds": chosen.seeds,
         "flat": chosen.flat,
-        "blocks": int(verdict.disagrees.size),
+        "blocks": int(verdict.counted.sum()),
+        "blocks_left_out": int((~verdict.counted).sum()),
         "disagreeing": int(verdict.disagrees.sum()),
         "disagreeing_percent": 100.0 * verdict.share,
         "means": [verdict.mean_a, verdict.mean_b],

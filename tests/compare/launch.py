@@ -55,13 +55,17 @@ class Host:
 
 @dataclass
 class Pictures:
-    """What one engine rendered: float32 [seed, row, column, RGBA], and the job's report."""
+    """What one engine rendered: float32 [seed, row, column, RGBA], and the job's report.
+
+    `bent`, bool [row, column], marks pixels where this Cycles computes something else.
+    """
 
     pixels: np.ndarray
     notes: list[str] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
     blender: str = ""
     view_layer: str = ""
+    bent: np.ndarray | None = None
 
 
 def environment() -> dict[str, str]:
@@ -92,7 +96,9 @@ def complaint(log: Path) -> str:
 def load(folder: Path) -> Pictures:
     """Read back what a job has written into `folder`."""
     report: dict[str, Any] = json.loads((folder / "report.json").read_text(encoding="utf-8"))
-    return Pictures(pixels=np.load(folder / "pixels.npy"), **report)
+    mask = folder / "bent.npy"
+    bent = np.load(mask) if mask.is_file() else None
+    return Pictures(pixels=np.load(folder / "pixels.npy"), bent=bent, **report)
 
 
 def run(job: Job, host: Host, folder: Path, reuse: bool = False) -> Pictures:
@@ -112,7 +118,7 @@ def run(job: Job, host: Host, folder: Path, reuse: bool = False) -> Pictures:
         and (folder / "report.json").is_file()
     ):
         return load(folder)
-    for name in ("report.json", "pixels.npy"):
+    for name in ("report.json", "pixels.npy", "bent.npy"):
         (folder / name).unlink(missing_ok=True)
     job_file.write_text(text, encoding="utf-8")
     with log.open("wb") as sink:

@@ -22,9 +22,10 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 @dataclass(frozen=True)
 class Verdict:
-    """The outcome for one pair of picture sets; `disagrees` is bool [block row, block column]."""
+    """The outcome for one pair of picture sets; both arrays are bool [block row, block column]."""
 
     disagrees: np.ndarray
+    counted: np.ndarray  # blocks that were judged; the others are never in `disagrees`
     mean_a: float
     mean_b: float
     mean_errors: float
@@ -33,8 +34,8 @@ class Verdict:
 
     @property
     def share(self) -> float:
-        """Share of blocks that disagree."""
-        return float(self.disagrees.mean())
+        """Share of the judged blocks that disagree."""
+        return float(self.disagrees.sum() / max(1, self.counted.sum()))
 
     @property
     def passed(self) -> bool:
@@ -69,9 +70,8 @@ def welch(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return difference, np.where(varies, p, np.where(difference == 0.0, 1.0, 0.0))
 
 
-def judge(a: np.ndarray, b: np.ndarray) -> Verdict:
-    """Compare two float arrays [seed, row, column, RGBA] of equal size; ValueError for other
-    shapes or bad numbers."""
+def check(a: np.ndarray, b: np.ndarray) -> None:
+    """ValueError with a sentence when the two sets cannot be compared."""
     if a.shape[1:] != b.shape[1:] or a.ndim != 4 or a.shape[3] != 4:
         raise ValueError(f"the pictures have different sizes: {a.shape[1:3]} and {b.shape[1:3]}")
     if min(len(a), len(b)) < 2:
@@ -80,24 +80,35 @@ def judge(a: np.ndarray, b: np.ndarray) -> Verdict:
         bad = np.count_nonzero(~np.isfinite(pictures))
         if bad:
             raise ValueError(f"{bad} values of the {name} engine's are not finite")
+
+
+def judge(a: np.ndarray, b: np.ndarray, left_out: np.ndarray | None = None) -> Verdict:
+    """Compare two float arrays [seed, row, column, RGBA] of equal size.
+
+    Blocks with a pixel in `left_out`, bool [row, column], are not judged. ValueError for unequal
+    sizes, too few seeds, and values that are not finite.
+    """
+    check(a, b)
     light_a, light_b = a[..., :3] @ LUMINANCE, b[..., :3] @ LUMINANCE
     blocks_a, blocks_b = blocks(light_a), blocks(light_b)
+    counted = np.ones(blocks_a.shape[1:], dtype=bool)
+    if left_out is not None:
+        counted = blocks(left_out[None])[0] == 0.0
     difference, p = welch(blocks_a, blocks_b)
-    value = blocks_a.mean(axis=0)
-    disagrees = (p < P_LIMIT) & (
-        np.abs(difference) > np.maximum(ABSOLUTE, RELATIVE * np.abs(value))
+    enough = np.maximum(ABSOLUTE, RELATIVE * np.abs(blocks_a.mean(axis=0)))
+    means_a, means_b = (
+        x[:, counted].mean(axis=1) if counted.any() else x[:, 0, 0] for x in (blocks_a, blocks_b)
     )
-    means_a, means_b = light_a.mean(axis=(1, 2)), light_b.mean(axis=(1, 2))
     gap = abs(float(means_b.mean() - means_a.mean()))
     error = float(np.sqrt(means_a.var(ddof=1) / len(a) + means_b.var(ddof=1) / len(b)))
     rounding = ROUNDING * max(abs(float(means_a.mean())), ROUNDING)
+    alpha = blocks(a[..., 3]).mean(axis=0) - blocks(b[..., 3]).mean(axis=0)
     return Verdict(
-        disagrees=disagrees,
+        disagrees=(p < P_LIMIT) & (np.abs(difference) > enough) & counted,
+        counted=counted,
         mean_a=float(means_a.mean()),
         mean_b=float(means_b.mean()),
         mean_errors=0.0 if gap <= rounding else gap / max(error, 1e-300),
-        largest=float(np.abs(difference).max()),
-        alpha_difference=float(
-            np.abs(blocks(a[..., 3]).mean(axis=0) - blocks(b[..., 3]).mean(axis=0)).max()
-        ),
+        largest=float(np.abs(difference[counted]).max(initial=0.0)),
+        alpha_difference=float(np.abs(alpha).max()),
     )

@@ -6,8 +6,8 @@ stores the pixels.
 
 JOB.json holds: file, engine, mode, samples, seeds, view_layer, flat, longest, world_image, frame,
 out. Written into the folder `out`: pixels.npy, float32 [seed, row, column, RGBA], row 0 at the
-bottom, premultiplied, scene linear; and report.json: notes (what was changed), seconds a picture,
-releases.
+bottom, premultiplied, scene linear; and bent.npy, bool [row, column], from Cycles up to 3.x (see
+bent.py); and report.json: notes (what was changed), seconds a picture, releases.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from compare.inside import camera, engines, objects, render_settings, world
+from compare.inside import bent, camera, engines, objects, render_settings, world
 
 
 def open_file(path: str) -> list[str]:
@@ -59,7 +59,7 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
         engines.set_cycles(scene, job["samples"])
     else:
         engines.set_komorebi(scene, job["samples"], job["mode"])
-    return scene, notes
+    return scene, layer, notes
 
 
 def render(scene: Any, path: Path) -> np.ndarray:
@@ -88,7 +88,7 @@ def main() -> None:
         if addon_utils.enable("komorebi", default_set=False) is None:
             raise RuntimeError("the add-on komorebi could not be enabled")
     notes = open_file(job["file"])
-    scene, more = prepare(job)
+    scene, layer, more = prepare(job)
     pictures, seconds = [], []
     for seed in job["seeds"]:
         engines.set_seed(scene, job["engine"], seed)
@@ -96,11 +96,14 @@ def main() -> None:
         pictures.append(render(scene, out / f"seed-{seed}.exr"))
         seconds.append(time.perf_counter() - start)
     np.save(out / "pixels.npy", np.stack(pictures))
+    if bent.needed(job["engine"], job["flat"]):
+        bent.show(scene, layer)
+        np.save(out / "bent.npy", render(scene, out / "bent.exr")[..., 0] > 0.0)
     report = {
         "notes": notes + more,
         "seconds": seconds,
         "blender": bpy.app.version_string,
-        "view_layer": next(x.name for x in scene.view_layers if x.use),
+        "view_layer": layer.name,
     }
     (out / "report.json").write_text(json.dumps(report), encoding="utf-8")
 
