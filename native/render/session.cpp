@@ -100,6 +100,9 @@ void Session::finish_item(const WorkItem& item, bool done) {
   item_states_[static_cast<std::size_t>(&item - items_.data())] =
       done ? ItemState::kDone : ItemState::kPending;
   if (!done) return;
+  while (done_before_ < items_.size() && item_states_[done_before_] == ItemState::kDone) {
+    ++done_before_;
+  }
   samples_done_ += std::uint64_t{item.count} * item.tile.area();
   const auto same = [&](const Rect& r) {
     return r.x_min == item.tile.x_min && r.y_min == item.tile.y_min;
@@ -135,7 +138,11 @@ Progress Session::progress() const {
   const std::lock_guard lock(mutex_);
   const double pixels = static_cast<double>(settings_.region.area());
   p.samples = settings_.samples;
-  p.sample = static_cast<std::uint32_t>(samples_done_ / settings_.region.area());
+  if (!settings_.use_progressive || done_before_ == items_.size()) {
+    p.sample = static_cast<std::uint32_t>(samples_done_ / settings_.region.area());
+  } else {  // items come pass after pass
+    p.sample = items_[done_before_].first - settings_.sample_offset;
+  }
   p.fraction = static_cast<double>(samples_done_) / (pixels * settings_.samples);
   p.elapsed = seconds_before_;
   if (!over_) p.elapsed += std::chrono::duration<double>(Clock::now() - started_).count();
