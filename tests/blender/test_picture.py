@@ -1,7 +1,5 @@
 """Pictures end to end: what lands in Blender's files."""
 
-# ruff: noqa: PT018 (no pytest inside Blender)
-
 import bpy
 import numpy as np
 import support

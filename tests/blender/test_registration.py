@@ -1,7 +1,5 @@
 """The engine, its properties and its panels, as scripts and users find them."""
 
-# ruff: noqa: PT018 (no pytest inside Blender)
-
 import bpy
 import komorebi
 import support

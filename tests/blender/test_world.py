@@ -1,6 +1,6 @@
 """Worlds: colours, environment maps, their rotation, and what stands in for the rest."""
 
-# ruff: noqa: PT017, PT018 (no pytest inside Blender)
+# ruff: noqa: PT017 (no pytest inside Blender)
 
 import math
 
