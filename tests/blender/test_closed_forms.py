@@ -15,7 +15,7 @@ SCENES = Path(__file__).resolve().parents[2] / "blend_scenes"
 SEEDS = 4
 
 
-def pictures(folder, name, samples=64, **properties):
+def pictures(folder, name, samples=32, **properties):
     """Pictures at independent seeds, red channel, float64 [seed, row, column]."""
     bpy.ops.wm.open_mainfile(filepath=str(SCENES / f"{name}.blend"), load_ui=False)
     scene = bpy.context.scene

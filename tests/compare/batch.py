@@ -44,18 +44,19 @@ def run_all(
 ) -> int:
     """Compare every scene below `chosen.all` in each mode; exit code 1 when any of them differs."""
     scenes = sorted(chosen.all.rglob("*.blend"))
-    rows, results, failed = [], [], False
-    for scene in scenes:
+    results: list[dict[str, Any]] = []
+    failed = False
+    for mode, scene in [(mode, scene) for mode in MODES for scene in scenes]:
         name = str(scene.relative_to(chosen.all))
-        for mode in MODES:
-            try:
-                figures: dict[str, Any] | str = compare(chosen, scene, mode)
-            except (launch.BlenderFailed, ValueError) as error:
-                figures = str(error)
-            failed |= isinstance(figures, str) or not figures["passed"]
-            rows.append(row(name, mode, figures))
-            results.append({"name": name, "mode": mode, "figures": figures})
-            print(rows[-1], flush=True)
+        try:
+            figures: dict[str, Any] | str = compare(chosen, scene, mode)
+        except (launch.BlenderFailed, ValueError) as error:
+            figures = str(error)
+        failed |= isinstance(figures, str) or not figures["passed"]
+        results.append({"name": name, "mode": mode, "figures": figures})
+        print(row(name, mode, figures), flush=True)
+    results.sort(key=lambda result: (result["name"], result["mode"]))
+    rows = [row(result["name"], result["mode"], result["figures"]) for result in results]
     if chosen.markdown is not None:
         chosen.markdown.write_text("\n".join([*HEAD, *rows]) + "\n", encoding="utf-8")
     if chosen.json is not None:

@@ -138,6 +138,6 @@ def run(job: Job, host: Host, folder: Path, reuse: bool = False) -> Pictures:
         except FileNotFoundError as error:
             raise BlenderFailed(f"there is no program {error.filename}") from error
     if code != 0 or not (folder / "report.json").is_file():
-        how = f"was ended by signal {-code}" if code < 0 else f"ended with exit code {code}"
+        how = f"crashed (signal {-code})" if code < 0 else f"ended with exit code {code}"
         raise BlenderFailed(f"{job.engine}: Blender {how}: {complaint(log)} ({log})")
     return load(folder)

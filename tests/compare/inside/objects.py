@@ -17,6 +17,7 @@ KINDS = {
     "GPENCIL": "grease pencil",
     "GREASEPENCIL": "grease pencil",
 }
+SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META", "EMPTY"}
 # Flags of objects that Komorebi does not honour yet, with the value that switches them off.
 FLAGS = {
     "is_holdout": False,
@@ -44,7 +45,7 @@ def objects_off() -> list[str]:
         if thing.type in KINDS:
             settle(thing, "hide_render", True)
             found[f"{KINDS[thing.type]} objects"] += 1
-        for flag, off in FLAGS.items():
+        for flag, off in FLAGS.items() if thing.type in SURFACES else ():
             if flag in thing.bl_rna.properties and getattr(thing, flag) != off:
                 settle(thing, flag, off)
                 found[f"objects with {flag} {not off}"] += 1
