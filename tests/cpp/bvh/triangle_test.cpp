@@ -96,6 +96,28 @@ TEST(Triangle, NeighboursLeaveNoGap) {
   }
 }
 
+TEST(Triangle, HitsLieInTheTrianglesOwnInterval) {
+  // Also where rays graze and t has few digits: a box is skipped by its interval alone.
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> number(-1.0f, 1.0f);
+  const auto point = [&] { return Vec3(number(random), number(random), number(random)); };
+  int hits = 0;
+  for (int i = 0; i < 50000; ++i) {
+    const Vec3 a = point(), b = a + 0.01f * point(), c = a + 0.01f * point();
+    const Vec3 target = (a + b + c) / 3.0f;
+    const Vec3 direction = (a - b) + (i % 2 == 0 ? 0.0f : 1e-8f) * point();
+    const Vec3 origin = target - 300.0f * direction;
+    TriangleHit hit;
+    if (!meet(origin, direction, a, b, c, &hit)) continue;
+    ++hits;
+    const SlabRay slab = make_slab_ray(origin, direction, Vec3(max_abs(origin) * kPadding));
+    const Interval inside =
+        slab_interval(slab, triangle_bounds(a, b, c), Interval{0.0f, kFloatMax});
+    ASSERT_TRUE(inside.begin <= hit.t && hit.t <= inside.end) << "ray " << i;
+  }
+  EXPECT_GT(hits, 1000);
+}
+
 TEST(Triangle, NoAreaIsSeenExactly) {
   const Vec3 a(0.1f, 0.2f, 0.3f), b(0.4f, 0.8f, 1.2f);
   EXPECT_TRUE(is_degenerate(a, a, b));
