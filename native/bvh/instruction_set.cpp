@@ -1,5 +1,9 @@
 // Which kernel runs. The choice is made here and not by Highway's library, so that the module
 // loads no shared library for it.
+#if defined(__x86_64__) || defined(__i386__)
+#include <cpuid.h>
+#endif
+
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
@@ -50,6 +54,14 @@ const Kernel& active_kernel() {
   return forced != nullptr ? *forced : *best;
 }
 
+#if defined(__x86_64__) || defined(__i386__)
+/// Not every compiler's __builtin_cpu_supports knows this one.
+bool has_f16c() {
+  unsigned eax = 0, ebx = 0, ecx = 0, edx = 0;
+  return __get_cpuid(1, &eax, &ebx, &ecx, &edx) != 0 && (ecx & bit_F16C) != 0;
+}
+#endif
+
 }  // namespace
 
 bool machine_has(const char* kernel_name) {
@@ -60,7 +72,7 @@ bool machine_has(const char* kernel_name) {
                     __builtin_cpu_supports("pclmul") && __builtin_cpu_supports("aes");
   const bool avx2 = sse4 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
                     __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma") &&
-                    __builtin_cpu_supports("f16c");
+                    has_f16c();
   const bool avx3 = avx2 && __builtin_cpu_supports("avx512f") &&
                     __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
                     __builtin_cpu_supports("avx512bw");
