@@ -19,9 +19,9 @@ struct Ray {
   float t_min = 0.0f;
   Vec3 direction{0.0f, 0.0f, 1.0f};
   float t_max = 3.402823466e+38f;
-  float time = 0.0f;                      ///< 0 = shutter opens, 1 = shutter closes
-  std::uint32_t mask = kMaskAll;          ///< instances with no common bit are not seen
-  std::uint32_t self_instance = kNone;    ///< the primitive that the ray leaves is never hit
+  float time = 0.0f;                    ///< 0 = shutter opens, 1 = shutter closes
+  std::uint32_t mask = kMaskAll;        ///< instances with no common bit are not seen
+  std::uint32_t self_instance = kNone;  ///< the primitive that the ray leaves is never hit
   std::uint32_t self_primitive = kNone;
 };
 
@@ -30,8 +30,8 @@ struct Hit {
   float t = 0.0f;
   float u = 0.0f;
   float v = 0.0f;
-  std::uint32_t instance = kNone;  ///< kNone: the ray missed
-  std::uint32_t primitive = kNone; ///< Blender's loop-triangle index in the mesh
+  std::uint32_t instance = kNone;   ///< kNone: the ray missed
+  std::uint32_t primitive = kNone;  ///< Blender's loop-triangle index in the mesh
   bool valid() const { return instance != kNone; }
 };
 

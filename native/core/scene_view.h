@@ -36,19 +36,19 @@ struct TreeView {
 /// Local space is Blender's object space moved by the mesh's own origin (render/mesh.h).
 struct MeshView {
   PrimitiveKind kind = PrimitiveKind::kTriangle;
-  std::uint32_t opaque = 1;         ///< 1: no leaf filter is ever needed
+  std::uint32_t opaque = 1;  ///< 1: no leaf filter is ever needed
   std::uint32_t triangle_count = 0;
   std::uint32_t vertex_count = 0;
-  std::uint32_t position_sets = 1;  ///< 1 = still; n sets of vertex_count positions in time
-  const float* vtx2xyz = nullptr;             ///< [position_sets][vertex_count][3]
-  const std::uint32_t* tri2vtx = nullptr;     ///< [triangle_count][3]
-  const float* corner2normal = nullptr;       ///< [triangle_count][3][3], unit; null: all flat
-  const std::uint8_t* tri2smooth = nullptr;   ///< [triangle_count]; null: all as corner2normal says
-  const std::uint16_t* tri2material = nullptr;///< [triangle_count]; null: all slot 0
+  std::uint32_t position_sets = 1;         ///< 1 = still; n sets of vertex_count positions in time
+  const float* vtx2xyz = nullptr;          ///< [position_sets][vertex_count][3]
+  const std::uint32_t* tri2vtx = nullptr;  ///< [triangle_count][3]
+  const float* corner2normal = nullptr;    ///< [triangle_count][3][3], unit; null: all flat
+  const std::uint8_t* tri2smooth = nullptr;  ///< [triangle_count]; null: all as corner2normal says
+  const std::uint16_t* tri2material = nullptr;  ///< [triangle_count]; null: all slot 0
   const AttributeView* attributes = nullptr;
   std::uint32_t attribute_count = 0;
   TreeView tree;
-  const TriangleBlock* blocks = nullptr;      ///< leaves of the tree point here
+  const TriangleBlock* blocks = nullptr;  ///< leaves of the tree point here
 };
 
 /// One instance of a mesh.  world = world_from_local · local + position
@@ -76,8 +76,8 @@ struct SceneView {
   std::uint32_t mesh_count = 0;
   const InstanceView* instances = nullptr;
   std::uint32_t instance_count = 0;
-  TreeView tree;                                      ///< over instances
-  const std::uint32_t* leaf2instance = nullptr;       ///< leaves of `tree` are ranges in here
+  TreeView tree;                                 ///< over instances
+  const std::uint32_t* leaf2instance = nullptr;  ///< leaves of `tree` are ranges in here
 };
 
 }  // namespace komorebi

@@ -43,9 +43,10 @@ inline Vec3 vertex(const MeshView& mesh, std::uint32_t index) {
 }  // namespace detail
 
 /// The point of a hit with a carried error bound (pbrt-v4 §6.8.5): the position comes from the
-/// barycentrics, not from t, so its error is a few ulps of the triangle's own coordinates. The bound
-/// adds the rounding of the instance's transform and of the way back into the same local space,
-/// so that a ray leaving by `offset` starts on the outer side of the surface as the tracer sees it.
+/// barycentrics, not from t, so its error is a few ulps of the triangle's own coordinates. The
+/// bound adds the rounding of the instance's transform and of the way back into the same local
+/// space, so that a ray leaving by `offset` starts on the outer side of the surface as the tracer
+/// sees it.
 inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit,
                                   const Vec3& ray_direction) {
   using namespace detail;
@@ -58,8 +59,8 @@ inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit,
   const Vec3 along_ab = hit.u * ab;
   const Vec3 along_ac = hit.v * ac;
   const Vec3 local = a + along_ab + along_ac;
-  // Rounding of the sum above; and the next ray's origin, in whose coordinates its triangle test works,
-  // may not sit on the surface when an axis happens to have no rounding (z = 0).
+  // Rounding of the sum above; and the next ray's origin, in whose coordinates its triangle test
+  // works, may not sit on the surface when an axis happens to have no rounding (z = 0).
   Vec3 local_error = gamma(5) * (glm::abs(a) + glm::abs(along_ab) + glm::abs(along_ac));
   local_error += Vec3(gamma(2) * max_abs(local));
 

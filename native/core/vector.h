@@ -8,7 +8,7 @@ namespace komorebi {
 using Vec2 = glm::vec2;
 using Vec3 = glm::vec3;
 using Vec3d = glm::dvec3;
-using Mat3 = glm::mat3;    // column-major, as GLM stores it
+using Mat3 = glm::mat3;  // column-major, as GLM stores it
 using Mat3d = glm::dmat3;
 using Mat4d = glm::dmat4;
 

@@ -15,12 +15,30 @@ constexpr std::uint32_t kVersion = 1;
 
 template <class T>
 constexpr ArrayFile::Type type_of();
-template <> constexpr ArrayFile::Type type_of<std::uint8_t>() { return ArrayFile::Type::kUint8; }
-template <> constexpr ArrayFile::Type type_of<std::int32_t>() { return ArrayFile::Type::kInt32; }
-template <> constexpr ArrayFile::Type type_of<std::uint32_t>() { return ArrayFile::Type::kUint32; }
-template <> constexpr ArrayFile::Type type_of<std::int64_t>() { return ArrayFile::Type::kInt64; }
-template <> constexpr ArrayFile::Type type_of<float>() { return ArrayFile::Type::kFloat32; }
-template <> constexpr ArrayFile::Type type_of<double>() { return ArrayFile::Type::kFloat64; }
+template <>
+constexpr ArrayFile::Type type_of<std::uint8_t>() {
+  return ArrayFile::Type::kUint8;
+}
+template <>
+constexpr ArrayFile::Type type_of<std::int32_t>() {
+  return ArrayFile::Type::kInt32;
+}
+template <>
+constexpr ArrayFile::Type type_of<std::uint32_t>() {
+  return ArrayFile::Type::kUint32;
+}
+template <>
+constexpr ArrayFile::Type type_of<std::int64_t>() {
+  return ArrayFile::Type::kInt64;
+}
+template <>
+constexpr ArrayFile::Type type_of<float>() {
+  return ArrayFile::Type::kFloat32;
+}
+template <>
+constexpr ArrayFile::Type type_of<double>() {
+  return ArrayFile::Type::kFloat64;
+}
 
 std::size_t size_of(std::uint32_t type) {
   constexpr std::size_t kSizes[] = {0, 1, 4, 4, 8, 4, 8};
@@ -30,7 +48,8 @@ std::size_t size_of(std::uint32_t type) {
 /// Reads a file front to back; every length is checked against what is left before it is believed.
 class Reader {
  public:
-  explicit Reader(const std::string& path) : path_(path), file_(path, std::ios::binary | std::ios::ate) {
+  explicit Reader(const std::string& path)
+      : path_(path), file_(path, std::ios::binary | std::ios::ate) {
     if (!file_) fail("cannot be opened");
     left_ = static_cast<std::uint64_t>(file_.tellg());
     file_.seekg(0);
@@ -156,9 +175,9 @@ std::string ArrayFile::get_text(const std::string& name) const {
   return {bytes.begin(), bytes.end()};
 }
 
-#define KOMOREBI_ARRAY_TYPE(T)                                                           \
-  template void ArrayFile::put<T>(const std::string&, std::span<const T>,                \
-                                  std::vector<std::uint64_t>);                           \
+#define KOMOREBI_ARRAY_TYPE(T)                                            \
+  template void ArrayFile::put<T>(const std::string&, std::span<const T>, \
+                                  std::vector<std::uint64_t>);            \
   template std::vector<T> ArrayFile::get<T>(const std::string&, std::uint64_t) const;
 KOMOREBI_ARRAY_TYPE(std::uint8_t)
 KOMOREBI_ARRAY_TYPE(std::int32_t)

@@ -23,7 +23,12 @@ namespace komorebi {
 class ArrayFile {
  public:
   enum class Type : std::uint32_t {
-    kUint8 = 1, kInt32 = 2, kUint32 = 3, kInt64 = 4, kFloat32 = 5, kFloat64 = 6
+    kUint8 = 1,
+    kInt32 = 2,
+    kUint32 = 3,
+    kInt64 = 4,
+    kFloat32 = 5,
+    kFloat64 = 6
   };
   struct Array {
     Type type = Type::kUint8;

@@ -15,11 +15,26 @@ namespace py = pybind11;
 /// The name that an error gives a type.
 template <class T>
 const char* type_name();
-template <> inline const char* type_name<float>() { return "float32"; }
-template <> inline const char* type_name<double>() { return "float64"; }
-template <> inline const char* type_name<std::int32_t>() { return "int32"; }
-template <> inline const char* type_name<std::uint32_t>() { return "uint32"; }
-template <> inline const char* type_name<bool>() { return "bool"; }
+template <>
+inline const char* type_name<float>() {
+  return "float32";
+}
+template <>
+inline const char* type_name<double>() {
+  return "float64";
+}
+template <>
+inline const char* type_name<std::int32_t>() {
+  return "int32";
+}
+template <>
+inline const char* type_name<std::uint32_t>() {
+  return "uint32";
+}
+template <>
+inline const char* type_name<bool>() {
+  return "bool";
+}
 
 /// Views an array without copying. `shape` holds the expected extents, −1 for any. Throws
 /// std::invalid_argument (ValueError in Python) naming `what` unless dtype, shape and C order are
@@ -27,7 +42,8 @@ template <> inline const char* type_name<bool>() { return "bool"; }
 template <class T>
 std::span<const T> view(const py::handle& object, const std::string& what,
                         const std::vector<py::ssize_t>& shape) {
-  if (!py::isinstance<py::array>(object)) throw std::invalid_argument(what + " must be a NumPy array");
+  if (!py::isinstance<py::array>(object))
+    throw std::invalid_argument(what + " must be a NumPy array");
   const auto array = py::reinterpret_borrow<py::array>(object);
   if (!py::isinstance<py::array_t<T>>(array)) {
     throw std::invalid_argument(what + " must have dtype " + type_name<T>() + ", not " +

@@ -15,8 +15,8 @@ namespace py = pybind11;
 void bind_scene(py::module_& module);
 void bind_session(py::module_& module);
 
-/// A pool for a build: `threads` of Blender's scene, 0 for one a core. One pool is kept from call to
-/// call, because starting threads costs more than a small mesh's build.
+/// A pool for a build: `threads` of Blender's scene, 0 for one a core. One pool is kept from call
+/// to call, because starting threads costs more than a small mesh's build.
 std::shared_ptr<ThreadPool> build_pool(unsigned threads);
 
 /// None gives a flag that nobody raises.

@@ -12,12 +12,11 @@ namespace komorebi::python {
 namespace {
 
 std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& positions,
-                                      const py::object& corner_verts,
-                                      const py::object& face_offsets, const py::object& tri2corner,
-                                      const py::object& tri2face, const py::object& corner_normals,
-                                      const py::object& smooth_faces,
-                                      const py::object& face_materials, const std::string& builder,
-                                      unsigned threads, const std::shared_ptr<Cancel>& cancel) {
+                                const py::object& corner_verts, const py::object& face_offsets,
+                                const py::object& tri2corner, const py::object& tri2face,
+                                const py::object& corner_normals, const py::object& smooth_faces,
+                                const py::object& face_materials, const std::string& builder,
+                                unsigned threads, const std::shared_ptr<Cancel>& cancel) {
   const std::string mesh = "mesh \"" + name + "\": ";
   MeshInput input;
   input.name = name;
@@ -50,8 +49,7 @@ std::shared_ptr<Environment> environment_from_file(const std::string& path,
     throw std::invalid_argument("color_space must be LINEAR or SRGB, not " + color_space);
   }
   const py::gil_scoped_release release;
-  Image image =
-      read_image(path, color_space == "SRGB" ? ColorSpace::kSrgb : ColorSpace::kLinear);
+  Image image = read_image(path, color_space == "SRGB" ? ColorSpace::kSrgb : ColorSpace::kLinear);
   return std::make_shared<Environment>(path, image.width, image.height, std::move(image.pixels));
 }
 

@@ -25,10 +25,9 @@ constexpr Choice<EnvironmentSampling> kEnvironmentSamplings[] = {
     {"MIS", EnvironmentSampling::kMis},
     {"COSINE", EnvironmentSampling::kCosine},
     {"ENVIRONMENT", EnvironmentSampling::kEnvironment}};
-constexpr Choice<PixelFilter> kPixelFilters[] = {
-    {"BLACKMAN_HARRIS", PixelFilter::kBlackmanHarris},
-    {"GAUSSIAN", PixelFilter::kGaussian},
-    {"BOX", PixelFilter::kBox}};
+constexpr Choice<PixelFilter> kPixelFilters[] = {{"BLACKMAN_HARRIS", PixelFilter::kBlackmanHarris},
+                                                 {"GAUSSIAN", PixelFilter::kGaussian},
+                                                 {"BOX", PixelFilter::kBox}};
 
 template <class Enum, std::size_t N>
 Enum parse(const char* setting, const std::string& name, const Choice<Enum> (&choices)[N]) {
@@ -167,8 +166,8 @@ void bind_session(py::module_& module) {
            "(premultiplied, scene linear), Depth 1, Normal 3.")
       .def_property_readonly("error", &error)
       .def_property_readonly("byte_count", &Session::byte_count);
-  auto scene = py::reinterpret_borrow<py::class_<Scene, std::shared_ptr<Scene>>>(
-      module.attr("Scene"));
+  auto scene =
+      py::reinterpret_borrow<py::class_<Scene, std::shared_ptr<Scene>>>(module.attr("Scene"));
   scene.def(
       "dump",
       [](const Scene& self, const std::string& path, const Settings& settings) {

@@ -1,14 +1,13 @@
-#include "python/bind.h"
-
 #include <OpenImageIO/oiioversion.h>
-#include <glm/glm.hpp>
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <glm/glm.hpp>
 #include <mutex>
 #include <thread>
 
 #include "bvh/traverse.h"
+#include "python/bind.h"
 #include "render/film.h"
 
 namespace komorebi::python {

@@ -7,17 +7,19 @@ namespace {
 /// cosine there; asked for alone, the environment's own (uniform) density is used as asked.
 float cosine_share(EnvironmentSampling sampling, bool uniform_world) {
   switch (sampling) {
-    case EnvironmentSampling::kCosine: return 1.0f;
-    case EnvironmentSampling::kEnvironment: return 0.0f;
-    case EnvironmentSampling::kMis: return uniform_world ? 1.0f : 0.5f;
+    case EnvironmentSampling::kCosine:
+      return 1.0f;
+    case EnvironmentSampling::kEnvironment:
+      return 0.0f;
+    case EnvironmentSampling::kMis:
+      return uniform_world ? 1.0f : 0.5f;
   }
   return 1.0f;
 }
 
 }  // namespace
 
-RenderContext make_context(const Scene& scene, const Settings& settings,
-                           const FilterView& filter) {
+RenderContext make_context(const Scene& scene, const Settings& settings, const FilterView& filter) {
   const bool ao = settings.method == Method::kAmbientOcclusion;
   RenderContext context;
   context.scene = scene.view();

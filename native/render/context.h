@@ -17,8 +17,8 @@ struct RenderContext {
   FilterView filter;
   Method method = Method::kAmbientOcclusion;
   AoSampling ao_sampling = AoSampling::kCosine;
-  Vec3 albedo{1.0f};          ///< of every surface; 1 for ambient occlusion
-  float light_distance = 0.0f;///< largest t of a light ray
+  Vec3 albedo{1.0f};            ///< of every surface; 1 for ambient occlusion
+  float light_distance = 0.0f;  ///< largest t of a light ray
   float cosine_share = 1.0f;  ///< share of light rays drawn from the cosine; the rest from the map
   bool transparent = false;
   std::uint32_t seed = 0;

@@ -32,10 +32,18 @@ void for_each_setting(SettingsLike& s, const Visit& visit) {
 }
 
 /// An enumeration's count of names, for the check of what is read.
-constexpr std::uint32_t last_value(Method) { return 1; }
-constexpr std::uint32_t last_value(AoSampling) { return 1; }
-constexpr std::uint32_t last_value(EnvironmentSampling) { return 2; }
-constexpr std::uint32_t last_value(PixelFilter) { return 2; }
+constexpr std::uint32_t last_value(Method) {
+  return 1;
+}
+constexpr std::uint32_t last_value(AoSampling) {
+  return 1;
+}
+constexpr std::uint32_t last_value(EnvironmentSampling) {
+  return 2;
+}
+constexpr std::uint32_t last_value(PixelFilter) {
+  return 2;
+}
 
 }  // namespace
 

@@ -28,7 +28,9 @@ double power_of_two_scale(double bound, int bits) {
 
 }  // namespace
 
-std::span<const PassDesc> known_passes() { return kPasses; }
+std::span<const PassDesc> known_passes() {
+  return kPasses;
+}
 
 void TileSums::reset(std::size_t pixels) {
   mean.assign(8 * pixels, 0);
@@ -117,7 +119,8 @@ void Film::read(const std::string& name, const Rect& rect, float* out) const {
         const std::size_t channel = first_channel + c;
         const double scale = channel < 3 ? radiance_scale_ : unit_scale_;
         const double n = std::max<std::uint32_t>(counts_[i], 1);
-        *out++ = static_cast<float>(static_cast<double>(sums_[kChannels * i + channel]) / scale / n);
+        *out++ =
+            static_cast<float>(static_cast<double>(sums_[kChannels * i + channel]) / scale / n);
       }
     }
   }

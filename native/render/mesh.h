@@ -17,14 +17,14 @@ namespace komorebi {
 /// A polygon mesh as Blender holds it; the arrays are only read during the build.
 struct MeshInput {
   std::string name;
-  std::span<const float> vtx2xyz;                ///< [vertices][3], object space
-  std::span<const std::int32_t> corner2vtx;      ///< [corners]
-  std::span<const std::int32_t> face_offsets;    ///< [faces + 1], first corner of each face
-  std::span<const std::int32_t> tri2corner;      ///< [triangles][3]; empty: triangles and quads only
-  std::span<const std::int32_t> tri2face;        ///< [triangles]; empty with tri2corner
-  std::span<const float> corner2normal;          ///< [corners][3]; empty: every face is flat
-  std::span<const std::uint8_t> face2smooth;     ///< [faces]; empty: every face is smooth
-  std::span<const std::int32_t> face2material;   ///< [faces]; empty: slot 0
+  std::span<const float> vtx2xyz;               ///< [vertices][3], object space
+  std::span<const std::int32_t> corner2vtx;     ///< [corners]
+  std::span<const std::int32_t> face_offsets;   ///< [faces + 1], first corner of each face
+  std::span<const std::int32_t> tri2corner;     ///< [triangles][3]; empty: triangles and quads only
+  std::span<const std::int32_t> tri2face;       ///< [triangles]; empty with tri2corner
+  std::span<const float> corner2normal;         ///< [corners][3]; empty: every face is flat
+  std::span<const std::uint8_t> face2smooth;    ///< [faces]; empty: every face is smooth
+  std::span<const std::int32_t> face2material;  ///< [faces]; empty: slot 0
 };
 
 /// A mesh in the tracer's own layout, with its tree: immutable, counted, shared by scenes, frames
@@ -34,8 +34,8 @@ struct MeshInput {
 class Mesh {
  public:
   /// Throws std::invalid_argument naming the mesh and a count, or Cancelled.
-  static std::shared_ptr<const Mesh> build(const MeshInput& input, Builder builder, ThreadPool& pool,
-                                           const Cancel& cancel);
+  static std::shared_ptr<const Mesh> build(const MeshInput& input, Builder builder,
+                                           ThreadPool& pool, const Cancel& cancel);
 
   /// The same triangles under a matrix that has no inverse (an object scaled flat): transformed
   /// here, because no ray can be taken into such an object's space. `matrix` acts on object space.

@@ -26,9 +26,9 @@ std::size_t count_non_finite_rows(std::span<const float> rows) {
 }
 
 std::size_t count_outside(std::span<const std::int32_t> indices, std::size_t limit) {
-  return static_cast<std::size_t>(std::count_if(indices.begin(), indices.end(), [&](std::int32_t i) {
-    return i < 0 || static_cast<std::size_t>(i) >= limit;
-  }));
+  return static_cast<std::size_t>(
+      std::count_if(indices.begin(), indices.end(),
+                    [&](std::int32_t i) { return i < 0 || static_cast<std::size_t>(i) >= limit; }));
 }
 
 void check_faces(const MeshInput& in) {
@@ -43,7 +43,8 @@ void check_faces(const MeshInput& in) {
     // In 64 bits: garbage offsets may not overflow the subtraction.
     small += std::int64_t{in.face_offsets[f + 1]} - in.face_offsets[f] < 3;
   }
-  if (small) refuse(in.name, counted(small, "face has", "faces have") + " fewer than three corners");
+  if (small)
+    refuse(in.name, counted(small, "face has", "faces have") + " fewer than three corners");
 }
 
 void check_triangles(const MeshInput& in) {
@@ -61,8 +62,8 @@ void check_triangles(const MeshInput& in) {
     refuse(in.name, counted(bad, "triangle corner is", "triangle corners are") + " out of range");
   }
   if (const auto bad = count_outside(in.tri2face, faces)) {
-    refuse(in.name, counted(bad, "triangle names a face", "triangles name a face") +
-                        " that is not there");
+    refuse(in.name,
+           counted(bad, "triangle names a face", "triangles name a face") + " that is not there");
   }
 }
 
@@ -78,8 +79,8 @@ void check_mesh(const MeshInput& in) {
   }
   check_faces(in);
   if (const auto bad = count_outside(in.corner2vtx, in.vtx2xyz.size() / 3)) {
-    refuse(in.name, counted(bad, "corner names a vertex", "corners name a vertex") +
-                        " that is not there");
+    refuse(in.name,
+           counted(bad, "corner names a vertex", "corners name a vertex") + " that is not there");
   }
   check_triangles(in);
   if (!in.corner2normal.empty() && in.corner2normal.size() != 3 * in.corner2vtx.size()) {

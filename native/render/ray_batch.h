@@ -18,9 +18,11 @@ class RayBatch {
   }
 
   void push(const Ray& ray) {
-    if (count_ == floats_[0].size()) reserve(count_ < 64 ? 64 : 2 * static_cast<std::size_t>(count_));
-    const float f[9] = {ray.origin.x,    ray.origin.y,    ray.origin.z, ray.direction.x, ray.direction.y,
-                        ray.direction.z, ray.t_min, ray.t_max,    ray.time};
+    if (count_ == floats_[0].size())
+      reserve(count_ < 64 ? 64 : 2 * static_cast<std::size_t>(count_));
+    const float f[9] = {ray.origin.x,    ray.origin.y,    ray.origin.z,
+                        ray.direction.x, ray.direction.y, ray.direction.z,
+                        ray.t_min,       ray.t_max,       ray.time};
     for (std::size_t c = 0; c < 9; ++c) floats_[c][count_] = f[c];
     words_[0][count_] = ray.mask;
     words_[1][count_] = ray.self_instance;
@@ -29,14 +31,23 @@ class RayBatch {
   }
 
   RaySpan span() const {
-    return {floats_[0].data(), floats_[1].data(), floats_[2].data(), floats_[3].data(),
-            floats_[4].data(), floats_[5].data(), floats_[6].data(), floats_[7].data(),
-            floats_[8].data(), words_[0].data(),  words_[1].data(),  words_[2].data(),
+    return {floats_[0].data(),
+            floats_[1].data(),
+            floats_[2].data(),
+            floats_[3].data(),
+            floats_[4].data(),
+            floats_[5].data(),
+            floats_[6].data(),
+            floats_[7].data(),
+            floats_[8].data(),
+            words_[0].data(),
+            words_[1].data(),
+            words_[2].data(),
             count_};
   }
 
  private:
-  std::vector<float> floats_[9];  // origin xyz, direction xyz, t_min, t_max, time
+  std::vector<float> floats_[9];         // origin xyz, direction xyz, t_min, t_max, time
   std::vector<std::uint32_t> words_[3];  // mask, self_instance, self_primitive
   std::uint32_t count_ = 0;
 };

@@ -195,10 +195,9 @@ std::uint64_t Scene::triangle_count() const {
 }
 
 std::size_t Scene::byte_count() const {
-  std::size_t sum = sizeof(Scene) + tree_.byte_count() +
-                    instances_.capacity() * sizeof(InstanceView) +
-                    inputs_.capacity() * sizeof(InstanceInput) +
-                    mesh_views_.capacity() * sizeof(MeshView);
+  std::size_t sum =
+      sizeof(Scene) + tree_.byte_count() + instances_.capacity() * sizeof(InstanceView) +
+      inputs_.capacity() * sizeof(InstanceInput) + mesh_views_.capacity() * sizeof(MeshView);
   for (const auto& mesh : traced_meshes_.empty() ? meshes_ : traced_meshes_) {
     sum += mesh->byte_count();
   }

@@ -22,11 +22,11 @@
 namespace komorebi {
 
 struct Progress {
-  std::uint32_t sample = 0;   ///< every pixel has as many (tile by tile: on average)
+  std::uint32_t sample = 0;  ///< every pixel has as many (tile by tile: on average)
   std::uint32_t samples = 0;
-  double fraction = 0.0;      ///< of all samples of all pixels
-  double elapsed = 0.0;       ///< seconds
-  double remaining = 0.0;     ///< seconds, from the pace so far; 0 before the first tile
+  double fraction = 0.0;   ///< of all samples of all pixels
+  double elapsed = 0.0;    ///< seconds
+  double remaining = 0.0;  ///< seconds, from the pace so far; 0 before the first tile
   std::uint64_t rays = 0;
   std::uint64_t clamped_samples = 0;
 };
@@ -84,11 +84,11 @@ class Session {
   bool over_ = true;
   std::string error_;
   std::vector<ItemState> item_states_;
-  std::size_t next_ = 0;        // items before it are taken
-  std::size_t done_before_ = 0; // items before it are done
+  std::size_t next_ = 0;         // items before it are taken
+  std::size_t done_before_ = 0;  // items before it are done
   std::vector<Rect> updated_;
   std::uint64_t samples_done_ = 0;
-  double seconds_before_ = 0.0;                 // of runs before a resume
+  double seconds_before_ = 0.0;  // of runs before a resume
   Clock::time_point started_;
 };
 

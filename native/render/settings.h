@@ -24,21 +24,21 @@ struct Rect {
 /// Everything about a render that is not in the scene. Names are those of `scene.komorebi`.
 struct Settings {
   Method method = Method::kAmbientOcclusion;
-  std::uint32_t samples = 128;       ///< camera samples a pixel
-  std::uint32_t light_samples = 1;   ///< light rays per camera sample
-  std::uint32_t sample_offset = 0;   ///< index of the first camera sample
+  std::uint32_t samples = 128;      ///< camera samples a pixel
+  std::uint32_t light_samples = 1;  ///< light rays per camera sample
+  std::uint32_t sample_offset = 0;  ///< index of the first camera sample
   std::uint32_t seed = 0;
-  float ao_distance = 0.0f;          ///< metres; 0: unlimited
+  float ao_distance = 0.0f;  ///< metres; 0: unlimited
   AoSampling ao_sampling = AoSampling::kCosine;
-  Vec3 clay_color{0.8f};             ///< albedo under World Light, linear Rec.709
+  Vec3 clay_color{0.8f};  ///< albedo under World Light, linear Rec.709
   EnvironmentSampling environment_sampling = EnvironmentSampling::kMis;
   PixelFilter pixel_filter = PixelFilter::kBlackmanHarris;
-  float filter_width = 1.5f;         ///< pixels
-  bool use_progressive = true;       ///< refine the whole frame, not one tile to its end
+  float filter_width = 1.5f;    ///< pixels
+  bool use_progressive = true;  ///< refine the whole frame, not one tile to its end
   bool film_transparent = false;
-  std::uint32_t threads = 0;         ///< 0: one per core
-  std::uint32_t tile_size = 64;      ///< pixels
-  bool has_region = false;           ///< false: the whole frame
+  std::uint32_t threads = 0;     ///< 0: one per core
+  std::uint32_t tile_size = 64;  ///< pixels
+  bool has_region = false;       ///< false: the whole frame
   Rect region;
   std::vector<std::string> passes{"Combined", "Depth", "Normal"};
 };

@@ -36,7 +36,8 @@ Triangulation triangulate(std::span<const float> vtx2xyz, std::span<const std::i
     result.tri2face[next++] = static_cast<std::int32_t>(face);
   };
   const auto point = [&](std::int32_t corner) {
-    const float* p = &vtx2xyz[3 * static_cast<std::size_t>(corner2vtx[static_cast<std::size_t>(corner)])];
+    const float* p =
+        &vtx2xyz[3 * static_cast<std::size_t>(corner2vtx[static_cast<std::size_t>(corner)])];
     return Vec3(p[0], p[1], p[2]);
   };
   for (std::size_t f = 0; f < faces; ++f) {

@@ -6,7 +6,8 @@
 
 namespace komorebi {
 
-/// Triangles of a polygon mesh: three corner indices each, in the order of Blender's loop triangles.
+/// Triangles of a polygon mesh: three corner indices each, in the order of Blender's loop
+/// triangles.
 struct Triangulation {
   std::vector<std::int32_t> tri2corner;  ///< [triangles][3]
   std::vector<std::int32_t> tri2face;    ///< [triangles]

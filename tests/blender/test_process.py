@@ -77,7 +77,8 @@ except RuntimeError as error:
 
 
 def test_cancel_takes_less_than_100_ms(folder):
-    done = support.script(CANCEL.format(picture=str(folder / "picture.png")), folder, timeout=60)
+    done = support.script(CANCEL.format(picture=str(folder / "picture.png")), folder, timeout=180)
+    assert "CANCEL" in done.output, done
     taken = float(re.search(r"CANCEL (\S+)", done.output).group(1))
     assert taken < 0.1 * support.slowness(), done
     assert 0 <= float(re.search(r"SAMPLES (\S+)", done.output).group(1)) < 1
@@ -153,7 +154,7 @@ def test_module_ends_by_itself_within_5_s(folder):
         "direct": "import komorebi\nkomorebi.unregister()\nkomorebi.register()\n",
     }
     for name, text in endings.items():
-        done = support.script(text + "import time; print('END', time.time())\n", folder, timeout=30)
+        done = support.script(text + "import time; print('END', time.time())\n", folder, timeout=90)
         assert done.code == 0, (name, done)
         assert done.seconds < 5 * support.slowness(), (name, done)
 
@@ -171,7 +172,7 @@ def test_registering_directly_ends_too(folder):
         "bpy.context.scene.render.resolution_percentage = 5\nbpy.ops.render.render()\n"
     )
     assert komorebi.__file__
-    done = support.process([sys.executable, path], timeout=30)
+    done = support.process([sys.executable, path], timeout=90)
     assert done.code == 0 and done.seconds < 5 * support.slowness(), done
 
 

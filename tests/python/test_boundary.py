@@ -19,12 +19,21 @@ def mesh_arguments(**changed: Any) -> dict[str, Any]:
 
 
 BAD_MESHES = {
-    "dtype": ({"positions": POSITIONS.astype(np.float64)}, "positions must have dtype float32, not float64"),
-    "shape": ({"positions": POSITIONS.ravel()}, r"positions must have shape \(any, 3\), not \(24,\)"),
+    "dtype": (
+        {"positions": POSITIONS.astype(np.float64)},
+        "positions must have dtype float32, not float64",
+    ),
+    "shape": (
+        {"positions": POSITIONS.ravel()},
+        r"positions must have shape \(any, 3\), not \(24,\)",
+    ),
     "order": ({"positions": np.asfortranarray(POSITIONS)}, "positions must be contiguous"),
     "stride": ({"corner_verts": np.repeat(CORNERS, 2)[::2]}, "corner_verts must be contiguous"),
     "list": ({"corner_verts": CORNERS.tolist()}, "corner_verts must be a NumPy array"),
-    "index dtype": ({"corner_verts": CORNERS.astype(np.int64)}, "corner_verts must have dtype int32"),
+    "index dtype": (
+        {"corner_verts": CORNERS.astype(np.int64)},
+        "corner_verts must have dtype int32",
+    ),
     "index": ({"corner_verts": CORNERS + 1}, "3 corners name a vertex that is not there"),
     "offsets": ({"face_offsets": OFFSETS[:-1]}, "face_offsets must run from 0"),
     "no offsets": ({"face_offsets": OFFSETS[:0]}, "face_offsets needs at least one entry"),

@@ -143,7 +143,9 @@ def test_meshes_are_shared_between_scenes_and_frames() -> None:
         camera = shapes.perspective(2.0, 1.0, 0.1, 100.0) @ shapes.look_at((5, -4, 3), (0, 0, 0))
         scene.set_camera("PERSPECTIVE", camera, 0.1, 100.0, 32, 32)
         scene.commit()
-        pictures.append(shapes.finish(core.Session(scene, core.Settings(samples=4))).read("Combined"))
+        pictures.append(
+            shapes.finish(core.Session(scene, core.Settings(samples=4))).read("Combined")
+        )
     assert np.array_equal(*pictures)
 
 

@@ -62,8 +62,7 @@ inline Polygons sphere(int n, const Vec3d& centre, double radius, bool smooth) {
   Polygons p;
   const auto normal = [&](int ring, int segment) {
     const double theta = glm::pi<double>() * ring / n, phi = glm::pi<double>() * segment / n;
-    return Vec3d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                 std::cos(theta));
+    return Vec3d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
   };
   for (int ring = 0; ring <= n; ++ring) {
     for (int segment = 0; segment < 2 * n; ++segment) {
@@ -118,16 +117,16 @@ inline CameraDesc camera_at(const Vec3d& eye, const Vec3d& target, std::uint32_t
   return camera;
 }
 
-/// A camera that sees nothing but a tiny patch around `target`: the mean of its picture is the value
-/// at that point. The patch's half width is `size`.
+/// A camera that sees nothing but a tiny patch around `target`: the mean of its picture is the
+/// value at that point. The patch's half width is `size`.
 inline CameraDesc probe_at(const Vec3d& target, const Vec3d& normal, double size) {
   CameraDesc camera = camera_at(target + normal, target, 16, 16);
   camera.kind = CameraKind::kOrthographic;
   const Vec3d up = std::abs(normal.z) > 0.9 ? Vec3d(0, 1, 0) : Vec3d(0, 0, 1);
   camera.clip_start = 0.5;
   camera.clip_end = 1.5;
-  camera.clip_from_world = glm::ortho(-size, size, -size, size, 0.5, 1.5) *
-                           glm::lookAt(target + normal, target, up);
+  camera.clip_from_world =
+      glm::ortho(-size, size, -size, size, 0.5, 1.5) * glm::lookAt(target + normal, target, up);
   return camera;
 }
 
@@ -140,7 +139,8 @@ inline std::shared_ptr<Scene> make_scene(const std::vector<Placed>& parts, const
                                          const Vec3& world = Vec3(1.0f)) {
   auto scene = std::make_shared<Scene>();
   for (const Placed& part : parts) {
-    const InstanceInput instance{scene->add_mesh(part.mesh), part.world_from_object, 0, kMaskAll, 0};
+    const InstanceInput instance{scene->add_mesh(part.mesh), part.world_from_object, 0, kMaskAll,
+                                 0};
     scene->add_instances({&instance, 1}, "test");
   }
   scene->set_world_color(world);

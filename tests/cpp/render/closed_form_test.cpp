@@ -8,8 +8,8 @@
 namespace komorebi::testing {
 namespace {
 
-// Half width of "infinite" planes, 10⁴ times the distance of the point: what they leave open is about
-// 10⁻⁴ of the sky, and so is what the float grid of such a plane's points does.
+// Half width of "infinite" planes, 10⁴ times the distance of the point: what they leave open is
+// about 10⁻⁴ of the sky, and so is what the float grid of such a plane's points does.
 constexpr double kHuge = 1e4;
 constexpr double kPlaneTolerance = 5e-4;
 
@@ -21,7 +21,9 @@ Settings ao_settings(AoSampling sampling) {
   return s;
 }
 
-Polygons ground() { return quad({-kHuge, -kHuge, 0}, {2 * kHuge, 0, 0}, {0, 2 * kHuge, 0}); }
+Polygons ground() {
+  return quad({-kHuge, -kHuge, 0}, {2 * kHuge, 0, 0}, {0, 2 * kHuge, 0});
+}
 
 void expect_value(const std::shared_ptr<Scene>& scene, const Settings& settings, double exact,
                   double tolerance) {
@@ -39,7 +41,8 @@ TEST_P(ClosedForm, PlaneBesideTangentSphere) {
   const auto plane = quad({-10, -10, 0}, {20, 0, 0}, {0, 20, 0}).mesh();
   for (const double r : {1.0, 2.0, 5.0}) {
     const double d = std::sqrt(1.0 + r * r);
-    const auto scene = committed(make_scene({{ball}, {plane}}, probe_at({r, 0, 0}, {0, 0, 1}, 1e-3)));
+    const auto scene =
+        committed(make_scene({{ball}, {plane}}, probe_at({r, 0, 0}, {0, 0, 1}, 1e-3)));
     // The polyhedron's silhouette lies within the sphere's: its share is smaller by about 4e-4.
     expect_value(scene, ao_settings(GetParam()), 1.0 - 1.0 / (d * d * d), 1e-3 / (d * d * d));
   }
@@ -57,8 +60,8 @@ TEST_P(ClosedForm, InsideCornerOfThreePlanes) {
   const auto floor = ground().mesh();
   const auto wall_x = quad({0, -kHuge, 0}, {0, 2 * kHuge, 0}, {0, 0, kHuge}).mesh();
   const auto wall_y = quad({-kHuge, 0, 0}, {2 * kHuge, 0, 0}, {0, 0, kHuge}).mesh();
-  const auto scene = committed(make_scene({{floor}, {wall_x}, {wall_y}},
-                                          probe_at({-1, -1, 0}, {0, 0, 1}, 1e-2)));
+  const auto scene =
+      committed(make_scene({{floor}, {wall_x}, {wall_y}}, probe_at({-1, -1, 0}, {0, 0, 1}, 1e-2)));
   expect_value(scene, ao_settings(GetParam()), 0.25, kPlaneTolerance);
 }
 
@@ -110,13 +113,14 @@ TEST(ConvexBody, SeesTheWholeSkyAtEveryScaleAndPlace) {
       const auto ball = sphere(32, Vec3d(0), scale, false).mesh();
       const Mat4d place = glm::translate(Mat4d(1.0), centre);
       const auto scene = committed(make_scene(
-          {{ball, place}},
-          camera_at(centre + scale * Vec3d(3, -2, 1), centre, 96, 96, scale), Vec3(1.0f)));
+          {{ball, place}}, camera_at(centre + scale * Vec3d(3, -2, 1), centre, 96, 96, scale),
+          Vec3(1.0f)));
       Settings settings;
       settings.samples = 16;
       const auto picture = render(scene, settings);
       for (std::size_t i = 0; i < picture.size(); i += 4) {
-        ASSERT_EQ(picture[i], 1.0f) << "scale " << scale << ", away " << away << ", pixel " << i / 4;
+        ASSERT_EQ(picture[i], 1.0f)
+            << "scale " << scale << ", away " << away << ", pixel " << i / 4;
       }
     }
   }
@@ -126,7 +130,8 @@ TEST(ConvexBody, SeesTheWholeSkyAtEveryScaleAndPlace) {
 TEST(ConvexBody, SeesTheWholeSkyWhenItsVerticesAreFarFromTheOrigin) {
   const Vec3d centre(1e4, 1e4, 100.0);
   const auto body = box(centre - 1.0, centre + 1.0).mesh();
-  const auto scene = committed(make_scene({{body}}, camera_at(centre + Vec3d(4, -3, 2), centre, 96, 96)));
+  const auto scene =
+      committed(make_scene({{body}}, camera_at(centre + Vec3d(4, -3, 2), centre, 96, 96)));
   Settings settings;
   settings.samples = 16;
   for (const float value : render(scene, settings)) ASSERT_EQ(value, 1.0f);
@@ -147,7 +152,8 @@ TEST(ConvexBody, SmoothShadingStaysCloseToOne) {
 TEST(ClosedRoom, IsBlack) {
   for (const double scale : {1e-3, 1.0, 1e3}) {
     const auto room = sphere(48, Vec3d(0), scale, false).mesh();
-    const auto scene = committed(make_scene({{room}}, camera_at(Vec3d(0), {scale, 0, 0}, 96, 96, scale * 0.1)));
+    const auto scene =
+        committed(make_scene({{room}}, camera_at(Vec3d(0), {scale, 0, 0}, 96, 96, scale * 0.1)));
     Settings settings;
     settings.samples = 16;
     const auto picture = render(scene, settings);

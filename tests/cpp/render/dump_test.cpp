@@ -19,7 +19,8 @@ class Dump : public ::testing::Test {
   void SetUp() override {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     path_ = (std::filesystem::temp_directory_path() /
-             ("komorebi_dump_" + std::string(test->name()) + ".komorebi")).string();
+             ("komorebi_dump_" + std::string(test->name()) + ".komorebi"))
+                .string();
   }
   void TearDown() override { std::remove(path_.c_str()); }
 
@@ -49,9 +50,7 @@ class Dump : public ::testing::Test {
     std::ifstream in(path_, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  void write(const std::string& bytes) const {
-    std::ofstream(path_, std::ios::binary) << bytes;
-  }
+  void write(const std::string& bytes) const { std::ofstream(path_, std::ios::binary) << bytes; }
 
   std::string path_;
 };

@@ -150,7 +150,8 @@ TEST_P(Equality, CancelAndResumeDoNotShow) {
   const auto expected = render(scene, settings_);
   Session session(scene, settings_);
   int breaks = 0;
-  // Longer and longer: a cancel drops what is half done, so on a busy machine short ones get nowhere.
+  // Longer and longer: a cancel drops what is half done, so on a busy machine short ones get
+  // nowhere.
   for (double seconds = 0.002; !session.wait(seconds); seconds *= 1.5) {
     session.cancel();
     ASSERT_TRUE(session.wait(10.0));
@@ -166,7 +167,8 @@ TEST_P(Equality, CancelAndResumeDoNotShow) {
 INSTANTIATE_TEST_SUITE_P(Methods, Equality,
                          ::testing::Values(Method::kAmbientOcclusion, Method::kWorldLight),
                          [](const auto& p) {
-                           return p.param == Method::kWorldLight ? "WorldLight" : "AmbientOcclusion";
+                           return p.param == Method::kWorldLight ? "WorldLight"
+                                                                 : "AmbientOcclusion";
                          });
 
 TEST(Seed, ChangesTheNoiseAndNothingElse) {
