@@ -52,8 +52,7 @@ class TopologyValidator {
         }
         continue;
       }
-      const std::string complaint = expand(visit, stack);
-      if (!complaint.empty()) return complaint;
+      if (std::string complaint = expand(visit, stack); !complaint.empty()) return complaint;
     }
     if (depth != topology_.depth) {
       return "depth is " + std::to_string(depth) + ", not " + std::to_string(topology_.depth);

@@ -1,4 +1,5 @@
-#include <cstring>
+#include <bit>
+#include <cstdint>
 
 #include "bvh/validate.h"
 #include "core/triangle.h"
@@ -56,7 +57,11 @@ std::string walk_wide(std::span<const WideNode> nodes, std::uint32_t depth, cons
 }
 
 bool same_bits(const Vec3& a, const Vec3& b) {
-  return std::memcmp(&a, &b, sizeof(Vec3)) == 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::bit_cast<std::uint32_t>(a[axis]) != std::bit_cast<std::uint32_t>(b[axis]))
+      return false;
+  }
+  return true;
 }
 
 }  // namespace
