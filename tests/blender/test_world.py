@@ -1,7 +1,5 @@
 """Worlds: colours, environment maps, their rotation, and what stands in for the rest."""
 
-# ruff: noqa: PT017 (no pytest inside Blender)
-
 import math
 
 import bpy
