@@ -73,4 +73,6 @@ def build() -> None:
     scatter("Bamboo leaves", add_bamboo(rng, stock), blade, 1.2, (0.6, 1.2))
     add_camera((0.55, -5.0, 1.30), (-0.05, 6.0, 3.15), lens=27.0)
     set_world((0.80, 0.88, 1.0))
+    scene.render.resolution_percentage = 75
+    scene["komorebi"] = {"samples": 64}  # where the add-on keeps its properties: a minute a picture
     scene["studio_light"], scene["studio_light_rotation"] = "sunrise", (45.0, 0.0, 84.0)
