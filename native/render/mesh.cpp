@@ -24,15 +24,15 @@ void for_each_index(std::size_t count, ThreadPool& pool, const Cancel& cancel, c
   });
 }
 
-/// The middle of the bounds, one float an axis.
-Vec3 middle(std::span<const float> vtx2xyz) {
-  Vec3d lo(1e300), hi(-1e300);
+/// The point of the bounds nearest to null, axis by axis.
+Vec3 nearest_to_null(std::span<const float> vtx2xyz) {
+  Vec3 lo(kFloatMax), hi(-kFloatMax);
   for (std::size_t i = 0; i + 2 < vtx2xyz.size(); i += 3) {
-    const Vec3d p(vtx2xyz[i], vtx2xyz[i + 1], vtx2xyz[i + 2]);
+    const Vec3 p(vtx2xyz[i], vtx2xyz[i + 1], vtx2xyz[i + 2]);
     lo = glm::min(lo, p);
     hi = glm::max(hi, p);
   }
-  return vtx2xyz.empty() ? Vec3(0.0f) : Vec3(0.5 * (lo + hi));
+  return vtx2xyz.empty() ? Vec3(0.0f) : glm::clamp(Vec3(0.0f), lo, hi);
 }
 
 /// True when no vertex loses a bit by moving to `origin`.
@@ -53,7 +53,7 @@ bool moves_exactly(std::span<const float> vtx2xyz, const Vec3& origin) {
 }  // namespace
 
 void Mesh::take_positions(std::span<const float> vtx2xyz) {
-  const Vec3 candidate = middle(vtx2xyz);
+  const Vec3 candidate = nearest_to_null(vtx2xyz);
   const Vec3 origin = moves_exactly(vtx2xyz, candidate) ? candidate : Vec3(0.0f);
   origin_ = Vec3d(origin);
   vtx2xyz_.resize(vtx2xyz.size());

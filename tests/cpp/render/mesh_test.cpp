@@ -71,12 +71,14 @@ TEST(Mesh, EmptyIsFine) {
   for (const float v : render(scene, settings)) EXPECT_EQ(v, 1.0f);  // the white world
 }
 
-TEST(Mesh, MovesToItsMiddleOnlyIfThatIsExact) {
+TEST(Mesh, MovesTowardsItsOriginOnlyIfThatIsExact) {
   const auto far = box(Vec3d(8192.0), Vec3d(8194.0)).mesh();
-  EXPECT_EQ(far->origin(), Vec3d(8193.0));
-  const auto uneven = box(Vec3d(-1e-4), Vec3d(1e5, 1.0, 1.0)).mesh();  // 1e-4 would be lost
+  EXPECT_EQ(far->origin(), Vec3d(8192.0));
+  const auto around = box(Vec3d(-3.0), Vec3d(1e4)).mesh();
+  EXPECT_EQ(around->origin(), Vec3d(0.0));
+  const auto uneven = box(Vec3d(1e-4), Vec3d(1e5, 1.0, 1.0)).mesh();  // 1e5 − 1e-4 is no float
   EXPECT_EQ(uneven->origin(), Vec3d(0.0));
-  EXPECT_EQ(uneven->view().vtx2xyz[0], -1e-4f);
+  EXPECT_EQ(uneven->view().vtx2xyz[0], 1e-4f);
 }
 
 TEST(Triangulate, FlipsTheDiagonalOfAConcaveQuad) {
