@@ -13,7 +13,7 @@ from compare import launch
 
 MODES = ("ao", "world")
 HEAD = (
-    "| scene | mode | pixels | blocks | left out | disagree | means | seconds | verdict | changed |",
+    "| scene | mode | pixels | blocks | excused | disagree | means | seconds | verdict | changed |",
     "|---|---|---|---|---|---|---|---|---|---|",
 )
 
@@ -29,7 +29,7 @@ def row(name: str, mode: str, figures: dict[str, Any] | str) -> str:
         mode,
         f"{width} × {height}",
         str(figures["blocks"]),
-        str(figures["blocks_left_out"] or ""),
+        str(figures["blocks_excused"] or ""),
         f"{figures['disagreeing_percent']:.2f} %",
         f"{figures['mean_difference_in_standard_errors']:.1f} SE",
         times,

@@ -29,9 +29,9 @@ def table(f: dict[str, Any]) -> str:
         ("largest of alpha", f"{f['largest_alpha_difference']:.3g}"),
         ("side by side", f"{f['picture']} (full red or blue: {full:.3g})"),
     ]
-    if f["blocks_left_out"]:
-        text = f"{f['blocks_left_out']}: Cycles up to 3.x bends normals there (inside/bent.py)"
-        rows.append(("blocks left out", text))
+    if f["blocks_excused"]:
+        text = f"{f['blocks_excused']}: there Cycles up to 3.x bends normals (inside/bent.py)"
+        rows.append(("blocks excused", text))
     for note in f["switched_off"] or ["nothing"]:
         rows.append(("switched off or changed", note))
     rows.append(("verdict", "they agree" if f["passed"] else "they do NOT agree"))

@@ -25,7 +25,7 @@ class Verdict:
     """The outcome for one pair of picture sets; both arrays are bool [block row, block column]."""
 
     disagrees: np.ndarray
-    counted: np.ndarray  # blocks that were judged; the others are never in `disagrees`
+    excused: np.ndarray  # blocks that would disagree, but for a reason that is known
     mean_a: float
     mean_b: float
     mean_errors: float
@@ -34,8 +34,8 @@ class Verdict:
 
     @property
     def share(self) -> float:
-        """Share of the judged blocks that disagree."""
-        return float(self.disagrees.sum() / max(1, self.counted.sum()))
+        """Share of all blocks that disagree."""
+        return float(self.disagrees.mean())
 
     @property
     def passed(self) -> bool:
@@ -82,18 +82,18 @@ def check(a: np.ndarray, b: np.ndarray) -> None:
             raise ValueError(f"{bad} values of the {name} engine's are not finite")
 
 
-def judge(a: np.ndarray, b: np.ndarray, left_out: np.ndarray | None = None) -> Verdict:
+def judge(a: np.ndarray, b: np.ndarray, known: np.ndarray | None = None) -> Verdict:
     """Compare two float arrays [seed, row, column, RGBA] of equal size.
 
-    Blocks with a pixel in `left_out`, bool [row, column], are not judged. ValueError for unequal
-    sizes, too few seeds, and values that are not finite.
+    Where `known`, bool [row, column], marks a pixel of a block, its disagreement is excused, and it
+    does not enter the means. ValueError for unequal sizes, too few seeds, values not finite.
     """
     check(a, b)
     light_a, light_b = a[..., :3] @ LUMINANCE, b[..., :3] @ LUMINANCE
     blocks_a, blocks_b = blocks(light_a), blocks(light_b)
     counted = np.ones(blocks_a.shape[1:], dtype=bool)
-    if left_out is not None:
-        counted = blocks(left_out[None])[0] == 0.0
+    if known is not None:
+        counted = blocks(known[None])[0] == 0.0
     difference, p = welch(blocks_a, blocks_b)
     enough = np.maximum(ABSOLUTE, RELATIVE * np.abs(blocks_a.mean(axis=0)))
     means_a, means_b = (
@@ -103,9 +103,10 @@ def judge(a: np.ndarray, b: np.ndarray, left_out: np.ndarray | None = None) -> V
     error = float(np.sqrt(means_a.var(ddof=1) / len(a) + means_b.var(ddof=1) / len(b)))
     rounding = ROUNDING * max(abs(float(means_a.mean())), ROUNDING)
     alpha = blocks(a[..., 3]).mean(axis=0) - blocks(b[..., 3]).mean(axis=0)
+    differs = (p < P_LIMIT) & (np.abs(difference) > enough)
     return Verdict(
-        disagrees=(p < P_LIMIT) & (np.abs(difference) > enough) & counted,
-        counted=counted,
+        disagrees=differs & counted,
+        excused=differs & ~counted,
         mean_a=float(means_a.mean()),
         mean_b=float(means_b.mean()),
         mean_errors=0.0 if gap <= rounding else gap / max(error, 1e-300),
