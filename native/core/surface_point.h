@@ -42,50 +42,99 @@ inline Vec3 vertex(const MeshView& mesh, std::uint32_t index) {
 
 }  // namespace detail
 
-/// The point of a hit with a carried error bound (pbrt-v4 §6.8.5): the position comes from the
-/// barycentrics, not from t, so its error is a few ulps of the triangle's own coordinates. The
-/// bound adds the rounding of the instance's transform and of the way back into the same local
-/// space, so that a ray leaving by `offset` starts on the outer side of the surface as the tracer
-/// sees it.
-inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit,
-                                  const Vec3& ray_direction) {
+namespace detail {
+
+/// The barycentrics at which a ray meets the plane of a triangle (a, a + ab, a + ac), in doubles
+/// (Möller and Trumbore 1997), moved onto the triangle; false if the ray is parallel to the plane.
+inline bool meet_triangle(const Vec3d& origin, const Vec3d& direction, const Vec3d& a,
+                          const Vec3d& ab, const Vec3d& ac, double& u, double& v) {
+  const Vec3d p = glm::cross(direction, ac);
+  const double determinant = glm::dot(ab, p);
+  if (determinant == 0.0) return false;
+  const Vec3d from_a = origin - a;
+  u = glm::dot(from_a, p) / determinant;
+  v = glm::dot(direction, glm::cross(from_a, ab)) / determinant;
+  u = u > 0.0 ? (u < 1.0 ? u : 1.0) : 0.0;
+  v = v > 0.0 ? (v < 1.0 - u ? v : 1.0 - u) : 0.0;
+  return true;
+}
+
+/// How near to an edge, in barycentrics, a point known to within `error` may lie: two errors of the
+/// triangle's least height, and never more than an eighth.
+inline double edge_margin(const Vec3d& ab, const Vec3d& ac, double error) {
+  const Vec3d bc = ac - ab;
+  const double longest =
+      std::sqrt(glm::max(glm::dot(ab, ab), glm::max(glm::dot(ac, ac), glm::dot(bc, bc))));
+  const Vec3d normal = glm::cross(ab, ac);
+  const double margin = 2.0 * error * longest / std::sqrt(glm::dot(normal, normal));
+  return margin < 0.125 ? margin : 0.125;
+}
+
+}  // namespace detail
+
+/// The point of a hit with a carried error bound (pbrt-v4 §6.8.5): from the barycentrics, whatever t
+/// was. Those of the tracer are floats, which on a large triangle is coarse (4 mm on 60 km), so they
+/// are worked out again in doubles, and taken if the tracer's bear them out: they do unless the ray
+/// grazes the triangle. The bound covers the rounding of the point and of the way into the
+/// instance's space and back, so that a ray leaving by `offset` starts on the outer side of the
+/// surface as the tracer sees it.
+inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit, const Ray& ray) {
   using namespace detail;
   const InstanceView& instance = scene.instances[hit.instance];
   const MeshView& mesh = scene.meshes[instance.mesh];
   const std::size_t tri = hit.primitive;
-  const Vec3 a = vertex(mesh, mesh.tri2vtx[3 * tri]);
-  const Vec3 ab = vertex(mesh, mesh.tri2vtx[3 * tri + 1]) - a;
-  const Vec3 ac = vertex(mesh, mesh.tri2vtx[3 * tri + 2]) - a;
-  const Vec3 along_ab = hit.u * ab;
-  const Vec3 along_ac = hit.v * ac;
-  const Vec3 local = a + along_ab + along_ac;
-  // Rounding of the sum above; and the next ray's origin, in whose coordinates its triangle test
-  // works, may not sit on the surface when an axis happens to have no rounding (z = 0).
-  Vec3 local_error = gamma(5) * (glm::abs(a) + glm::abs(along_ab) + glm::abs(along_ac));
-  local_error += Vec3(gamma(2) * max_abs(local));
+  const Vec3d a(vertex(mesh, mesh.tri2vtx[3 * tri]));
+  const Vec3d ab = Vec3d(vertex(mesh, mesh.tri2vtx[3 * tri + 1])) - a;
+  const Vec3d ac = Vec3d(vertex(mesh, mesh.tri2vtx[3 * tri + 2])) - a;
+  const Mat3d into_local(instance.local_from_world);
+  const Vec3d place(instance.position);
+  double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
+  double exact_u = 0.0, exact_v = 0.0;
+  constexpr double kBorneOut = 1e-5;
+  if (meet_triangle(into_local * (Vec3d(ray.origin) - place), into_local * Vec3d(ray.direction), a,
+                    ab, ac, exact_u, exact_v) &&
+      std::abs(exact_u - u) < kBorneOut && std::abs(exact_v - v) < kBorneOut) {
+    u = exact_u;
+    v = exact_v;
+  }
+  Vec3d local = a + u * ab + v * ac;
+  Vec3d relative = Mat3d(instance.world_from_local) * local;
 
-  const Vec3 relative = instance.world_from_local * local;
+  // In local space: the rounding of the point here (also on an axis that happens to have none, as
+  // z = 0), in the world, and on the way back by local_from_world · (position − place).
+  Vec3 local_error = gamma(2) * (glm::abs(Vec3(local)) + Vec3(max_abs(Vec3(local))));
+  local_error += abs_times(instance.local_from_world,
+                           gamma(6) * glm::abs(Vec3(relative)) +
+                               gamma(2) * glm::abs(Vec3(relative + place)));
+
+  // A point on an edge may not round to the far side of the neighbour: it moves into its own triangle.
+  const double margin = edge_margin(ab, ac, static_cast<double>(max_abs(local_error)));
+  if (u < margin || v < margin || 1.0 - u - v < margin) {
+    u = margin + (1.0 - 3.0 * margin) * u;
+    v = margin + (1.0 - 3.0 * margin) * v;
+    local = a + u * ab + v * ac;
+    relative = Mat3d(instance.world_from_local) * local;
+  }
   SurfacePoint point;
-  point.position = relative + instance.position;
-  // The next ray comes back by local_from_world · (position − instance.position): six roundings.
-  local_error += gamma(6) * abs_times(instance.local_from_world, glm::abs(relative));
+  point.position = Vec3(relative + place);
   const Vec3 error = abs_times(instance.world_from_local, local_error) +
-                     gamma(5) * abs_times(instance.world_from_local, glm::abs(local)) +
                      gamma(2) * glm::abs(point.position);
 
   // Normals go by the inverse transpose, which keeps the outside outside under mirroring too.
   const Mat3 normal_transform = glm::transpose(instance.local_from_world);
-  const Vec3 local_cross = unit_or(glm::cross(unit_or(ab, ab), unit_or(ac, ac)), Vec3(0, 0, 1));
-  point.geometric_normal = unit_or(normal_transform * local_cross, -ray_direction);
+  const Vec3 along_ab(ab), along_ac(ac);
+  const Vec3 local_cross = unit_or(glm::cross(unit_or(along_ab, along_ab), unit_or(along_ac, along_ac)),
+                                   Vec3(0, 0, 1));
+  point.geometric_normal = unit_or(normal_transform * local_cross, -ray.direction);
   point.normal = point.geometric_normal;
   if (mesh.corner2normal && (!mesh.tri2smooth || mesh.tri2smooth[tri])) {
     const float* n = mesh.corner2normal + 9 * tri;
-    const float w = 1.0f - hit.u - hit.v;
+    const float w = 1.0f - hit.u - hit.v;  // normals vary slowly: the tracer's own will do
     const Vec3 smooth = w * Vec3(n[0], n[1], n[2]) + hit.u * Vec3(n[3], n[4], n[5]) +
                         hit.v * Vec3(n[6], n[7], n[8]);
     point.normal = unit_or(normal_transform * smooth, point.geometric_normal);
   }
-  if (glm::dot(point.geometric_normal, ray_direction) > 0.0f) {
+  if (glm::dot(point.geometric_normal, ray.direction) > 0.0f) {
     point.geometric_normal = -point.geometric_normal;
     point.normal = -point.normal;
   }

@@ -41,7 +41,7 @@ void BatchIntegrator::shade() {
       results_[i] = background(context_, ray.direction);
       continue;
     }
-    points_[i] = surface_point(context_.scene, hits_[i], ray.direction);
+    points_[i] = surface_point(context_.scene, hits_[i], ray);
     results_[i] = seen_surface(context_, points_[i]);
   }
 }

@@ -39,7 +39,7 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
   const Hit hit = intersect_scalar(context.scene, ray);
   if (!hit.valid()) return background(context, ray.direction);
 
-  const SurfacePoint point = surface_point(context.scene, hit, ray.direction);
+  const SurfacePoint point = surface_point(context.scene, hit, ray);
   const Sampler sampler(context.seed, x, y);
   PixelSample result = seen_surface(context, point);
   for (std::uint32_t j = 0; j < context.light_samples; ++j) {

@@ -164,6 +164,20 @@ TEST(ClosedRoom, IsBlack) {
   }
 }
 
+/// Nor from the very edges and corners, where a point may round to the other side of a wall.
+TEST(ClosedRoom, IsBlackInItsCorners) {
+  const auto room = box({-2, -2, -1.5}, {2, 2, 1.5}).mesh();
+  for (const Vec3d& corner : {Vec3d(2, 2, 1.5), Vec3d(-2, 2, -1.5), Vec3d(2, -2, 0)}) {
+    const Vec3d eye = corner * 0.9;
+    const auto scene = committed(make_scene({{room}}, camera_at(eye, corner, 200, 200, 1e-3)));
+    Settings settings;
+    settings.samples = 32;
+    for (const float value : render(scene, settings)) ASSERT_TRUE(value == 0.0f || value == 1.0f);
+    const Estimate e = estimate(render(scene, settings));
+    ASSERT_EQ(e.mean, 0.0);
+  }
+}
+
 /// White furnace: a convex body of albedo 1 in a sky of 1 vanishes, whatever the sampling.
 TEST(Furnace, AWhiteBodyVanishesInAWhiteWorld) {
   const auto ball = sphere(32, Vec3d(0), 1.0, false).mesh();
