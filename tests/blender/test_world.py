@@ -52,6 +52,20 @@ def test_no_world_is_black_and_a_plain_one_its_colour():
     assert np.allclose(data.color, (0.3, 0.2, 0.1))
 
 
+def test_a_view_layer_without_sky_is_black():
+    scene = support.fresh_scene()
+    scene.komorebi.method = "WORLD_LIGHT"
+    background().inputs["Color"].default_value = (1, 1, 1, 1)
+    scene.view_layers[0].use_sky = False
+    with support.folder() as folder:
+        picture = support.render(folder)
+    assert not picture[:, :, :3].any()
+    scene.view_layers[0].use_sky = True
+    with support.folder() as folder:
+        picture = support.render(folder)
+    assert picture[:, :, :3].min() > 0
+
+
 def direction_map(width=64, height=32):
     """An image whose colour is its own direction, (d + 1) / 2, as Blender maps them."""
     image = bpy.data.images.new("Directions", width, height, float_buffer=True)

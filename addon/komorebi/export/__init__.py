@@ -15,8 +15,10 @@ def export_scene(engine: Any, depsgraph: Any, view: str) -> SceneData:
     """Everything that the view layer of `depsgraph` shows at its frame, seen by stereo `view`."""
     scene = depsgraph.scene
     warn_unsupported(engine, depsgraph)
+    # A view layer without its sky has no world at all, neither seen nor as a light.
+    world = scene.world if depsgraph.view_layer.use_sky else None
     data = SceneData(
-        camera=export_camera(engine, depsgraph, view), world=export_world(engine, scene.world)
+        camera=export_camera(engine, depsgraph, view), world=export_world(engine, world)
     )
     export_instances(engine, depsgraph, data)
     return data
