@@ -72,10 +72,10 @@ inline double edge_margin(const Vec3d& ab, const Vec3d& ac, double error) {
 
 }  // namespace detail
 
-/// The point of a hit with a carried error bound (pbrt-v4 §6.8.5): from the barycentrics, whatever t
-/// was. Those of the tracer are floats, which on a large triangle is coarse (4 mm on 60 km), so they
-/// are worked out again in doubles, and taken if the tracer's bear them out: they do unless the ray
-/// grazes the triangle. The bound covers the rounding of the point and of the way into the
+/// The point of a hit with a carried error bound (pbrt-v4 §6.8.5): from the barycentrics, whatever
+/// t was. Those of the tracer are floats, which on a large triangle is coarse (4 mm on 60 km), so
+/// they are worked out again in doubles, and taken if the tracer's bear them out: they do unless
+/// the ray grazes the triangle. The bound covers the rounding of the point and of the way into the
 /// instance's space and back, so that a ray leaving by `offset` starts on the outer side of the
 /// surface as the tracer sees it.
 inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit, const Ray& ray) {
@@ -103,11 +103,12 @@ inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit, const 
   // In local space: the rounding of the point here (also on an axis that happens to have none, as
   // z = 0), in the world, and on the way back by local_from_world · (position − place).
   Vec3 local_error = gamma(2) * (glm::abs(Vec3(local)) + Vec3(max_abs(Vec3(local))));
-  local_error += abs_times(instance.local_from_world,
-                           gamma(6) * glm::abs(Vec3(relative)) +
-                               gamma(2) * glm::abs(Vec3(relative + place)));
+  local_error +=
+      abs_times(instance.local_from_world,
+                gamma(6) * glm::abs(Vec3(relative)) + gamma(2) * glm::abs(Vec3(relative + place)));
 
-  // A point on an edge may not round to the far side of the neighbour: it moves into its own triangle.
+  // A point on an edge may not round to the far side of the neighbour: it moves into its own
+  // triangle.
   const double margin = edge_margin(ab, ac, static_cast<double>(max_abs(local_error)));
   if (u < margin || v < margin || 1.0 - u - v < margin) {
     u = margin + (1.0 - 3.0 * margin) * u;
@@ -117,14 +118,14 @@ inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit, const 
   }
   SurfacePoint point;
   point.position = Vec3(relative + place);
-  const Vec3 error = abs_times(instance.world_from_local, local_error) +
-                     gamma(2) * glm::abs(point.position);
+  const Vec3 error =
+      abs_times(instance.world_from_local, local_error) + gamma(2) * glm::abs(point.position);
 
   // Normals go by the inverse transpose, which keeps the outside outside under mirroring too.
   const Mat3 normal_transform = glm::transpose(instance.local_from_world);
   const Vec3 along_ab(ab), along_ac(ac);
-  const Vec3 local_cross = unit_or(glm::cross(unit_or(along_ab, along_ab), unit_or(along_ac, along_ac)),
-                                   Vec3(0, 0, 1));
+  const Vec3 local_cross =
+      unit_or(glm::cross(unit_or(along_ab, along_ab), unit_or(along_ac, along_ac)), Vec3(0, 0, 1));
   point.geometric_normal = unit_or(normal_transform * local_cross, -ray.direction);
   point.normal = point.geometric_normal;
   if (mesh.corner2normal && (!mesh.tri2smooth || mesh.tri2smooth[tri])) {

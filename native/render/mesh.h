@@ -29,8 +29,8 @@ struct MeshInput {
 
 /// A mesh in the tracer's own layout, with its tree: immutable, counted, shared by scenes, frames
 /// and view layers. Positions are relative to `origin`: the point of the bounds nearest to the
-/// object's own origin when that subtraction is exact for every vertex, else null. So a mesh far from
-/// its object's origin costs the rays no precision, and one around it keeps its own.
+/// object's own origin when that subtraction is exact for every vertex, else null. So a mesh far
+/// from its object's origin costs the rays no precision, and one around it keeps its own.
 class Mesh {
  public:
   /// Throws std::invalid_argument naming the mesh and a count, or Cancelled.
