@@ -76,11 +76,11 @@ def smooth_faces(mesh: Any) -> BoolArray:
 
 def corner_normals(mesh: Any, verts: IntArray) -> FloatArray:
     """Shading normals [corners, 3]; `verts` as `corner_verts` gives them."""
-    if CORNER_NORMALS:
+    if CORNER_NORMALS and _has_corner_normals(mesh):
         result = np.empty(len(mesh.loops) * 3, np.float32)
         mesh.corner_normals.foreach_get("vector", result)
         return result.reshape(-1, 3)
-    if mesh.use_auto_smooth:
+    if not CORNER_NORMALS and mesh.use_auto_smooth:
         result = np.empty(len(mesh.loops) * 3, np.float32)
         mesh.calc_normals_split()
         mesh.loops.foreach_get("normal", result)
@@ -89,6 +89,21 @@ def corner_normals(mesh: Any, verts: IntArray) -> FloatArray:
     result = np.empty(len(mesh.vertices) * 3, np.float32)
     mesh.vertex_normals.foreach_get("vector", result)
     return result.reshape(-1, 3)[verts]
+
+
+def _has_corner_normals(mesh: Any) -> bool:
+    """Whether the corners of a vertex differ, as Cycles sees it: by custom normals or sharp edges.
+
+    Flat faces beside smooth ones do not count, though Blender's own corner normals split there.
+    """
+    if mesh.has_custom_normals:
+        return True
+    sharp = mesh.attributes.get("sharp_edge")
+    if sharp is None or sharp.domain != "EDGE" or sharp.data_type != "BOOLEAN":
+        return False
+    result = np.empty(len(mesh.edges), np.bool_)
+    sharp.data.foreach_get("value", result)
+    return bool(result.any())
 
 
 def face_materials(mesh: Any) -> IntArray | None:
