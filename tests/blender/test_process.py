@@ -135,9 +135,10 @@ def test_memory_stays_flat_over_50_renders():
         monkey.location.x = index  # something new each time
         bpy.ops.render.render()
         sizes.append(support.resident_bytes())
-    # One render more or less holds a few MB at its end: the least of ten renders tells.
+    # The allocator's own ups and downs are 20 MB (flat over 200 renders); a mesh kept by each render
+    # would be 4 MB each time. The least of ten renders tells.
     growth = min(sizes[40:]) - min(sizes[10:20])
-    assert growth < 10 << 20, f"{growth >> 10} kB in 30 renders: {[s >> 20 for s in sizes[::5]]}"
+    assert growth < 32 << 20, f"{growth >> 10} kB in 30 renders: {[s >> 20 for s in sizes[::5]]}"
 
 
 def test_module_ends_by_itself_within_5_s(folder):
