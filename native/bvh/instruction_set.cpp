@@ -26,7 +26,18 @@ void occluded_all_scalar(const SceneView& scene, const RaySpan& rays, std::uint3
   }
 }
 
-constexpr Kernel kScalarKernel = {"SCALAR", &intersect_all_scalar, &occluded_all_scalar};
+void occluded_bundles_scalar(const SceneView& scene, const RayBundles& bundles,
+                             std::uint32_t* bits) {
+  for (std::uint32_t i = 0; i < (bundles.ray_count() + 31) / 32; ++i) bits[i] = 0;
+  for (std::uint32_t p = 0; p < bundles.point_count; ++p) {
+    for (std::uint32_t i = bundles.first_ray[p]; i < bundles.first_ray[p + 1]; ++i) {
+      if (occluded_scalar(scene, bundles.ray(p, i))) bits[i / 32] |= 1u << (i % 32);
+    }
+  }
+}
+
+constexpr Kernel kScalarKernel = {"SCALAR", &intersect_all_scalar, &occluded_all_scalar,
+                                  &occluded_bundles_scalar};
 
 /// The kernel of that name, or null if there is none that this machine runs.
 const Kernel* find_kernel(const char* name) {
@@ -86,6 +97,10 @@ bool machine_has(const char* kernel_name) {
 
 void intersect(const SceneView& scene, const RaySpan& rays, Hit* hits) {
   active_kernel().intersect(scene, rays, hits);
+}
+
+void occluded(const SceneView& scene, const RayBundles& bundles, std::uint32_t* bits) {
+  active_kernel().occluded_bundles(scene, bundles, bits);
 }
 
 void occluded(const SceneView& scene, const RaySpan& rays, std::uint32_t* bits) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/ray_bundles.h"
 #include "core/scene_view.h"
 
 namespace komorebi {
@@ -9,6 +10,7 @@ struct Kernel {
   const char* name;
   void (*intersect)(const SceneView& scene, const RaySpan& rays, Hit* hits);
   void (*occluded)(const SceneView& scene, const RaySpan& rays, std::uint32_t* bits);
+  void (*occluded_bundles)(const SceneView& scene, const RayBundles& bundles, std::uint32_t* bits);
 };
 
 /// Null-terminated, best first; whether the machine has the instruction set is another question.

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ray_bundles.h"
 #include "core/scene_view.h"
 
 namespace komorebi {
@@ -14,7 +15,10 @@ void intersect(const SceneView& scene, const RaySpan& rays, Hit* hits);
 /// (rays.count + 31) / 32 words are overwritten, unused bits with 0.
 void occluded(const SceneView& scene, const RaySpan& rays, std::uint32_t* bits);
 
-/// The specification of the two: one ray, the same tree, plain C++. Kernels agree to the bit.
+/// The same for rays that leave common points: bit i % 32 of word i / 32 for ray i of all.
+void occluded(const SceneView& scene, const RayBundles& bundles, std::uint32_t* bits);
+
+/// The specification of the three: one ray, the same tree, plain C++. Kernels agree to the bit.
 Hit intersect_scalar(const SceneView& scene, const Ray& ray);
 bool occluded_scalar(const SceneView& scene, const Ray& ray);
 

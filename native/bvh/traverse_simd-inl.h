@@ -236,10 +236,22 @@ void occluded(const SceneView& scene, const RaySpan& rays, std::uint32_t* bits) 
   }
 }
 
+void occluded_bundles(const SceneView& scene, const RayBundles& bundles, std::uint32_t* bits) {
+  const std::uint32_t count = bundles.ray_count();
+  for (std::uint32_t i = 0; i < (count + 31) / 32; ++i) bits[i] = 0;
+  for (std::uint32_t p = 0; p < bundles.point_count; ++p) {
+    for (std::uint32_t i = bundles.first_ray[p]; i < bundles.first_ray[p + 1]; ++i) {
+      if (trace<true>(scene, bundles.ray(p, i), OpaqueFilter{}).valid())
+        bits[i / 32] |= 1u << (i % 32);
+    }
+  }
+}
+
 }  // namespace
 
 extern const Kernel kKernel;
-constexpr Kernel kKernel = {&HWY_STR(HWY_NAMESPACE)[2], &intersect, &occluded};  // N_AVX2: "AVX2"
+constexpr Kernel kKernel = {&HWY_STR(HWY_NAMESPACE)[2], &intersect, &occluded,
+                            &occluded_bundles};  // N_AVX2: "AVX2"
 
 }  // namespace HWY_NAMESPACE
 }  // namespace komorebi
