@@ -28,14 +28,26 @@ std::vector<float> interleaved_passes(const Session& session, const Rect& region
   return all;
 }
 
+Settings chosen(Settings settings, const CliOptions& options) {
+  settings.threads = options.threads;
+  if (options.samples) settings.samples = *options.samples;
+  if (options.seed) settings.seed = *options.seed;
+  if (options.light_samples) settings.light_samples = *options.light_samples;
+  if (options.adaptive_threshold) {
+    settings.use_adaptive_sampling = true;
+    settings.adaptive_threshold = *options.adaptive_threshold;
+  }
+  if (options.adaptive_min_samples) settings.adaptive_min_samples = *options.adaptive_min_samples;
+  if (options.no_adaptive_sampling) settings.use_adaptive_sampling = false;
+  if (options.time_limit) settings.time_limit = *options.time_limit;
+  return settings;
+}
+
 int render(const CliOptions& options) {
   ThreadPool pool(options.threads);
   const Cancel never;
   DumpedRender dumped = read_dump(options.scene, pool, never);
-  Settings settings = dumped.settings;
-  settings.threads = options.threads;
-  if (options.samples) settings.samples = *options.samples;
-  if (options.seed) settings.seed = *options.seed;
+  const Settings settings = chosen(dumped.settings, options);
   dumped.scene->commit(pool, never);
   std::printf("%llu triangles, %u instances, %.1f MB\n",
               static_cast<unsigned long long>(dumped.scene->triangle_count()),

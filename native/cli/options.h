@@ -10,7 +10,11 @@ struct CliOptions {
   std::string scene;
   std::string output = "komorebi.exr";
   std::uint32_t threads = 0;
-  std::optional<std::uint32_t> samples, seed;  ///< in place of the scene's own
+  // In place of the scene's own.
+  std::optional<std::uint32_t> samples, seed, light_samples, adaptive_min_samples;
+  std::optional<float> adaptive_threshold;  ///< turns adaptive sampling on
+  bool no_adaptive_sampling = false;
+  std::optional<float> time_limit;
 };
 
 const char* usage();

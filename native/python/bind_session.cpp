@@ -43,8 +43,9 @@ using Region = std::array<std::uint32_t, 4>;
 
 std::shared_ptr<Settings> make_settings(
     const std::string& method, std::uint32_t samples, std::uint32_t light_samples,
-    std::uint32_t sample_offset, std::uint32_t seed, float ao_distance,
-    const std::string& ao_sampling, const std::array<float, 3>& clay_color,
+    std::uint32_t sample_offset, std::uint32_t seed, bool use_adaptive_sampling,
+    float adaptive_threshold, std::uint32_t adaptive_min_samples, float time_limit,
+    float ao_distance, const std::string& ao_sampling, const std::array<float, 3>& clay_color,
     const std::string& environment_sampling, const std::string& pixel_filter, float filter_width,
     bool use_progressive, bool film_transparent, std::uint32_t threads, std::uint32_t tile_size,
     const std::optional<Region>& region, const std::vector<std::string>& passes) {
@@ -54,6 +55,10 @@ std::shared_ptr<Settings> make_settings(
   s->light_samples = light_samples;
   s->sample_offset = sample_offset;
   s->seed = seed;
+  s->use_adaptive_sampling = use_adaptive_sampling;
+  s->adaptive_threshold = adaptive_threshold;
+  s->adaptive_min_samples = adaptive_min_samples;
+  s->time_limit = time_limit;
   s->ao_distance = ao_distance;
   s->ao_sampling = parse("ao_sampling", ao_sampling, kAoSamplings);
   s->clay_color = Vec3(clay_color[0], clay_color[1], clay_color[2]);
@@ -128,7 +133,11 @@ void bind_settings(py::module_& module) {
       .def(py::init(&make_settings), py::kw_only(), py::arg("method") = "AMBIENT_OCCLUSION",
            py::arg("samples") = d.samples, py::arg("light_samples") = d.light_samples,
            py::arg("sample_offset") = d.sample_offset, py::arg("seed") = d.seed,
-           py::arg("ao_distance") = d.ao_distance, py::arg("ao_sampling") = "COSINE",
+           py::arg("use_adaptive_sampling") = d.use_adaptive_sampling,
+           py::arg("adaptive_threshold") = d.adaptive_threshold,
+           py::arg("adaptive_min_samples") = d.adaptive_min_samples,
+           py::arg("time_limit") = d.time_limit, py::arg("ao_distance") = d.ao_distance,
+           py::arg("ao_sampling") = "COSINE",
            py::arg("clay_color") = std::array<float, 3>{0.8f, 0.8f, 0.8f},
            py::arg("environment_sampling") = "MIS", py::arg("pixel_filter") = "BLACKMAN_HARRIS",
            py::arg("filter_width") = d.filter_width, py::arg("use_progressive") = d.use_progressive,

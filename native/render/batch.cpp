@@ -15,16 +15,16 @@ constexpr std::uint32_t kLightRaysPerBatch = 8192;
 
 }  // namespace
 
-void BatchIntegrator::start(const Rect& tile, std::size_t begin, std::size_t end,
-                            std::uint32_t sample) {
+void BatchIntegrator::start(std::size_t begin, std::size_t end, std::uint32_t first) {
   paths_.clear();
   camera_rays_.clear();
+  auto pixel = static_cast<std::uint32_t>(begin % pixels_.size());
+  auto sample = first + static_cast<std::uint32_t>(begin / pixels_.size());
   for (std::size_t i = begin; i < end; ++i) {
-    const auto pixel = static_cast<std::uint32_t>(i);
-    const std::uint32_t x = tile.x_min + pixel % tile.width();
-    const std::uint32_t y = tile.y_min + pixel / tile.width();
-    paths_.push_back({x, y, pixel});
-    camera_rays_.push(start_ray(context_, x, y, sample));
+    const Pixel& at = pixels_[pixel];
+    paths_.push_back({at.x, at.y, pixel, sample});
+    camera_rays_.push(start_ray(context_, at.x, at.y, sample));
+    if (++pixel == pixels_.size()) pixel = 0, ++sample;
   }
   hits_.resize(paths_.size());
   intersect(context_.scene, camera_rays_.span(), hits_.data());
@@ -46,14 +46,14 @@ void BatchIntegrator::shade() {
   }
 }
 
-bool BatchIntegrator::light(std::uint32_t sample, const Cancel& cancel) {
+bool BatchIntegrator::light(const Cancel& cancel) {
   const RaySpan rays = camera_rays_.span();
   for (std::uint32_t i = 0; i < paths_.size(); ++i) {
     if (!hits_[i].valid()) continue;
     const Sampler sampler(context_.seed, paths_[i].x, paths_[i].y);
     for (std::uint32_t j = 0; j < context_.light_samples; ++j) {
-      const LightSample drawn =
-          sample_light(context_, points_[i], sampler, sample * context_.light_samples + j);
+      const LightSample drawn = sample_light(context_, points_[i], sampler,
+                                             paths_[i].sample * context_.light_samples + j);
       if (drawn.contribution == Vec3(0.0f)) continue;
       light_rays_.push(light_ray(context_, points_[i], hits_[i], drawn.direction, rays.time[i]));
       contributions_.push_back(drawn.contribution);
@@ -86,21 +86,26 @@ void BatchIntegrator::flush_light() {
   light_owners_.clear();
 }
 
-bool BatchIntegrator::render(const Rect& tile, std::uint32_t first, std::uint32_t count,
+bool BatchIntegrator::render(Cells cells, std::uint32_t first, std::uint32_t count,
                              const Film& film, TileSums& sums, const Cancel& cancel) {
-  sums.reset(tile.area());
-  for (std::uint32_t sample = first; sample < first + count; ++sample) {
-    for (std::size_t begin = 0; begin < tile.area(); begin += kPathsPerBatch) {
-      if (cancel.raised()) return false;
-      start(tile, begin, std::min(tile.area(), begin + kPathsPerBatch), sample);
-      shade();
-      if (!light(sample, cancel)) return false;
-      for (std::size_t i = 0; i < paths_.size(); ++i) {
-        film.add(sums, paths_[i].pixel, sample, results_[i]);
-      }
+  pixels_.clear();
+  for (const Rect& cell : cells) {
+    for (std::uint32_t y = cell.y_min; y < cell.y_max; ++y) {
+      for (std::uint32_t x = cell.x_min; x < cell.x_max; ++x) pixels_.push_back({x, y});
     }
   }
+  sums.reset(pixels_.size());
   sums.samples = count;
+  const std::size_t paths = pixels_.size() * count;  // all of one sample, then of the next
+  for (std::size_t begin = 0; begin < paths; begin += kPathsPerBatch) {
+    if (cancel.raised()) return false;
+    start(begin, std::min(paths, begin + kPathsPerBatch), first);
+    shade();
+    if (!light(cancel)) return false;
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      film.add(sums, paths_[i].pixel, paths_[i].sample, results_[i]);
+    }
+  }
   return true;
 }
 

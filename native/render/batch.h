@@ -2,36 +2,41 @@
 
 #include "core/surface_point.h"
 #include "parallel/cancel.h"
+#include "render/cells.h"
 #include "render/context.h"
 #include "render/film.h"
 #include "render/ray_batch.h"
 
 namespace komorebi {
 
-/// Renders tiles in batches of some thousand paths, stage by stage: start → closest hits → light
+/// Renders cells in batches of some thousand paths, stage by stage: start → closest hits → light
 /// rays → occlusion → film. The arrays live as long as the object, one a thread.
 class BatchIntegrator {
  public:
   explicit BatchIntegrator(const RenderContext& context) : context_(context) {}
 
-  /// Adds samples [first, first + count) of every pixel of `tile` (full-frame pixels) to `sums`.
+  /// Adds samples [first, first + count) of every pixel of `cells` to `sums`.
   /// False when cancelled on the way; the sums are then to be thrown away.
-  bool render(const Rect& tile, std::uint32_t first, std::uint32_t count, const Film& film,
+  bool render(Cells cells, std::uint32_t first, std::uint32_t count, const Film& film,
               TileSums& sums, const Cancel& cancel);
 
   std::uint64_t ray_count() const { return rays_; }
 
  private:
+  struct Pixel {
+    std::uint32_t x, y;  // in the full frame
+  };
   struct Path {
-    std::uint32_t x, y, pixel;  // full-frame position, and index in the tile
+    std::uint32_t x, y, pixel, sample;  // full-frame position, and index among the cells' pixels
   };
 
-  void start(const Rect& tile, std::size_t begin, std::size_t end, std::uint32_t sample);
+  void start(std::size_t begin, std::size_t end, std::uint32_t first);
   void shade();
-  bool light(std::uint32_t sample, const Cancel& cancel);
+  bool light(const Cancel& cancel);
   void flush_light();
 
   RenderContext context_;
+  std::vector<Pixel> pixels_;
   std::vector<Path> paths_;
   RayBatch camera_rays_;
   std::vector<Hit> hits_;

@@ -1,5 +1,7 @@
 #include "render/context.h"
 
+#include <algorithm>
+
 namespace komorebi {
 namespace {
 
@@ -33,7 +35,7 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.cosine_share = cosine_share(settings.environment_sampling, scene.world_is_uniform());
   context.transparent = settings.film_transparent;
   context.seed = settings.seed;
-  context.light_samples = settings.light_samples;
+  context.light_samples = std::max(1u, settings.light_samples);
   return context;
 }
 

@@ -13,6 +13,10 @@ void for_each_setting(SettingsLike& s, const Visit& visit) {
   visit("light_samples", s.light_samples);
   visit("sample_offset", s.sample_offset);
   visit("seed", s.seed);
+  visit("use_adaptive_sampling", s.use_adaptive_sampling);
+  visit("adaptive_threshold", s.adaptive_threshold);
+  visit("adaptive_min_samples", s.adaptive_min_samples);
+  visit("time_limit", s.time_limit);
   visit("ao_distance", s.ao_distance);
   visit("ao_sampling", s.ao_sampling);
   visit("clay_color_r", s.clay_color.x);
@@ -63,6 +67,7 @@ Settings get_settings(const ArrayFile& file) {
   for_each_setting(settings, [&](const char* name, auto& value) {
     using Value = std::decay_t<decltype(value)>;
     const std::string key = std::string("settings/") + name;
+    if (!file.has(key)) return;  // an older dump: its renders had the default
     if constexpr (std::is_same_v<Value, float>) {
       value = file.get_value<float>(key);
     } else {

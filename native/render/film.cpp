@@ -84,17 +84,19 @@ void Film::add(TileSums& tile, std::size_t pixel, std::uint32_t sample_index,
   }
 }
 
-void Film::merge(const Rect& tile, const TileSums& sums) {
+void Film::merge(Cells cells, const TileSums& sums) {
   const std::lock_guard lock(mutex_);
   std::size_t from = 0;
-  for (std::uint32_t y = tile.y_min; y < tile.y_max; ++y) {
-    for (std::uint32_t x = tile.x_min; x < tile.x_max; ++x, ++from) {
-      const std::size_t to = index(x, y);
-      for (std::size_t c = 0; c < kChannels; ++c) {
-        sums_[kChannels * to + c] += sums.mean[kChannels * from + c];
+  for (const Rect& cell : cells) {
+    for (std::uint32_t y = cell.y_min; y < cell.y_max; ++y) {
+      for (std::uint32_t x = cell.x_min; x < cell.x_max; ++x, ++from) {
+        const std::size_t to = index(x, y);
+        for (std::size_t c = 0; c < kChannels; ++c) {
+          sums_[kChannels * to + c] += sums.mean[kChannels * from + c];
+        }
+        if (sums.has_first) depth_[to] = sums.depth[from];
+        counts_[to] += sums.samples;
       }
-      if (sums.has_first) depth_[to] = sums.depth[from];
-      counts_[to] += sums.samples;
     }
   }
   clamped_ += sums.clamped;

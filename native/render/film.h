@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "render/cells.h"
 #include "render/settings.h"
 
 namespace komorebi {
@@ -34,7 +35,7 @@ struct PixelSample {
   Vec3 normal{0.0f};    ///< world space
 };
 
-/// Sums of one tile, made by one thread and merged into the film as a whole.
+/// Sums of some cells' pixels, made by one thread and merged into the film as a whole.
 struct TileSums {
   std::vector<std::int64_t> mean;  ///< [pixels][8]: radiance 3, alpha, normal 3, unused
   std::vector<float> depth;        ///< [pixels], of the film's first sample
@@ -56,11 +57,11 @@ class Film {
   Film(const Rect& region, const Settings& settings, float max_radiance);
 
   const Rect& region() const { return region_; }
-  /// Quantises one sample into a tile's sums; pixel is an index into the tile.
+  /// Quantises one sample into a tile's sums; pixel is an index into them.
   void add(TileSums& tile, std::size_t pixel, std::uint32_t sample_index,
            const PixelSample& sample) const;
-  /// Adds a tile's sums; `tile` in full-frame pixels. Safe from any thread.
-  void merge(const Rect& tile, const TileSums& sums);
+  /// Adds the sums of these cells' pixels. Safe from any thread.
+  void merge(Cells cells, const TileSums& sums);
 
   /// Writes a pass of a rectangle (full-frame pixels) as [height][width][channels] floats.
   /// Pixels without samples are zero. Safe while others merge.

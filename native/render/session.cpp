@@ -115,9 +115,9 @@ void Session::work() {
   TileSums sums;
   std::uint64_t counted = 0;
   while (const WorkItem* item = take_item()) {
-    const bool done =
-        integrator.render(item->tile, item->first, item->count, film_, sums, *cancel_);
-    if (done) film_.merge(item->tile, sums);
+    const std::vector<Rect> cells = cells_of(item->tile);
+    const bool done = integrator.render(cells, item->first, item->count, film_, sums, *cancel_);
+    if (done) film_.merge(cells, sums);
     finish_item(*item, done);
     rays_ += integrator.ray_count() - counted;
     counted = integrator.ray_count();

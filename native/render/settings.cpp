@@ -20,10 +20,19 @@ void check_settings(const Settings& s, std::uint32_t width, std::uint32_t height
   require(s.samples >= 1 && s.samples <= kMaxSamples, "samples must be 1 to 16777216");
   require(s.sample_offset <= kMaxSamples - s.samples,
           "sample_offset + samples must not exceed 16777216");
-  require(s.light_samples >= 1 && s.light_samples <= kMaxLightSamples,
-          "light_samples must be 1 to 4096");
+  require(s.light_samples <= kMaxLightSamples, "light_samples must be 0 (automatic) to 4096");
   require(std::uint64_t{s.sample_offset + s.samples} * s.light_samples <= 0xffffffffu,
           "(sample_offset + samples) times light_samples must stay below 2^32");
+  require(std::isfinite(s.adaptive_threshold) && s.adaptive_threshold >= 0.0f &&
+              s.adaptive_threshold <= 1.0f,
+          "adaptive_threshold must be 0 (automatic) to 1");
+  require(s.adaptive_min_samples <= kMaxSamples,
+          "adaptive_min_samples must be 0 (automatic) to 16777216");
+  require(!(s.use_adaptive_sampling && s.sample_offset > 0),
+          "use_adaptive_sampling needs all samples from the first on: with a sample_offset, parts "
+          "that each stop on their own do not add up to the whole");
+  require(std::isfinite(s.time_limit) && s.time_limit >= 0.0f,
+          "time_limit must be finite and not negative (0 is none)");
   require(std::isfinite(s.ao_distance) && s.ao_distance >= 0.0f,
           "ao_distance must be finite and not negative (0 is unlimited)");
   for (int c = 0; c < 3; ++c) {

@@ -25,10 +25,14 @@ struct Rect {
 struct Settings {
   Method method = Method::kAmbientOcclusion;
   std::uint32_t samples = 128;      ///< camera samples a pixel
-  std::uint32_t light_samples = 1;  ///< light rays per camera sample
+  std::uint32_t light_samples = 0;  ///< light rays per camera sample; 0: automatic
   std::uint32_t sample_offset = 0;  ///< index of the first camera sample
   std::uint32_t seed = 0;
-  float ao_distance = 0.0f;  ///< metres; 0: unlimited
+  bool use_adaptive_sampling = false;      ///< stop where the noise is below the threshold
+  float adaptive_threshold = 0.0f;         ///< noise; 0: from the number of samples
+  std::uint32_t adaptive_min_samples = 0;  ///< before the first stop; 0: from the threshold
+  float time_limit = 0.0f;                 ///< seconds; 0: none
+  float ao_distance = 0.0f;                ///< metres; 0: unlimited
   AoSampling ao_sampling = AoSampling::kCosine;
   Vec3 clay_color{0.8f};  ///< albedo under World Light, linear Rec.709
   EnvironmentSampling environment_sampling = EnvironmentSampling::kMis;

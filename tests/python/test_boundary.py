@@ -94,7 +94,10 @@ def test_a_committed_scene_is_closed() -> None:
 
 BAD_SETTINGS = {
     "samples must": {"samples": 0},
-    "light_samples must": {"light_samples": 0},
+    "light_samples must": {"light_samples": 4097},
+    "adaptive_threshold must": {"adaptive_threshold": float("nan")},
+    "do not add up": {"use_adaptive_sampling": True, "sample_offset": 1},
+    "time_limit must": {"time_limit": -1.0},
     "ao_distance must": {"ao_distance": -1.0},
     "clay_color": {"clay_color": (0.5, 2.0, 0.5)},
     "filter_width": {"filter_width": float("nan")},

@@ -73,7 +73,8 @@ TEST_P(Equality, BatchesAgreeWithOneRayAfterAnother) {
         film.add(sums, 0, i, render_sample(context, x, y, i));
       }
       sums.samples = settings_.samples;
-      film.merge({x, y, x + 1, y + 1}, sums);
+      const Rect pixel{x, y, x + 1, y + 1};
+      film.merge({&pixel, 1}, sums);
     }
   }
   for (const PassDesc& pass : known_passes()) {

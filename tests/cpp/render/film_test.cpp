@@ -26,7 +26,7 @@ void add_one(Film& film, std::uint32_t index, const PixelSample& sample) {
   sums.reset(1);
   film.add(sums, 0, index, sample);
   sums.samples = 1;
-  film.merge(kPixel, sums);
+  film.merge({&kPixel, 1}, sums);
 }
 
 std::vector<float> read(const Film& film, const char* pass) {
@@ -69,7 +69,7 @@ TEST(Film, TheLargestSumDoesNotOverflow) {
   sums.reset(1);
   for (std::uint32_t i = 0; i < settings.samples; ++i) film.add(sums, 0, i, grey(31999.0f));
   sums.samples = settings.samples;
-  film.merge(kPixel, sums);
+  film.merge({&kPixel, 1}, sums);
   EXPECT_FLOAT_EQ(read(film, "Combined")[0], 31999.0f);
   EXPECT_EQ(film.clamped_samples(), 0u);
 }
