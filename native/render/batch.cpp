@@ -46,22 +46,28 @@ void BatchIntegrator::shade() {
   }
 }
 
+void BatchIntegrator::begin_light(std::uint32_t path) {
+  light_rays_.begin_point(leaving_origin(points_[path]), camera_rays_.span().time[path],
+                          hits_[path]);
+  light_owners_.push_back(path);
+}
+
 bool BatchIntegrator::light(const Cancel& cancel) {
-  const RaySpan rays = camera_rays_.span();
   for (std::uint32_t i = 0; i < paths_.size(); ++i) {
     if (!hits_[i].valid()) continue;
     const Sampler sampler(context_.seed, paths_[i].x, paths_[i].y);
+    begin_light(i);
     for (std::uint32_t j = 0; j < context_.light_samples; ++j) {
       const LightSample drawn = sample_light(context_, points_[i], sampler,
                                              paths_[i].sample * context_.light_samples + j);
       if (drawn.contribution == Vec3(0.0f)) continue;
-      light_rays_.push(light_ray(context_, points_[i], hits_[i], drawn.direction, rays.time[i]));
-      contributions_.push_back(drawn.contribution);
-      light_owners_.push_back(i);
-      if (light_rays_.size() == kLightRaysPerBatch) {
+      if (light_rays_.ray_count() == kLightRaysPerBatch) {
         flush_light();
         if (cancel.raised()) return false;
+        begin_light(i);
       }
+      light_rays_.push_ray(drawn.direction, context_.light_distance);
+      contributions_.push_back(drawn.contribution);
     }
   }
   flush_light();
@@ -72,18 +78,20 @@ bool BatchIntegrator::light(const Cancel& cancel) {
 }
 
 void BatchIntegrator::flush_light() {
-  const std::uint32_t count = light_rays_.size();
-  occluded_bits_.resize((count + 31) / 32);
-  occluded(context_.scene, light_rays_.span(), occluded_bits_.data());
-  rays_ += count;
-  for (std::uint32_t k = 0; k < count; ++k) {  // in the order drawn: sums are in floats
-    if (!((occluded_bits_[k / 32] >> (k % 32)) & 1u)) {
-      results_[light_owners_[k]].radiance += contributions_[k];
+  const RayBundles bundles = light_rays_.bundles(kMaskShadow);
+  occluded_bits_.resize((bundles.ray_count() + 31) / 32);
+  occluded(context_.scene, bundles, occluded_bits_.data());
+  rays_ += bundles.ray_count();
+  for (std::uint32_t p = 0; p < bundles.point_count; ++p) {
+    Vec3& radiance = results_[light_owners_[p]].radiance;
+    for (std::uint32_t k = bundles.first_ray[p]; k < bundles.first_ray[p + 1]; ++k) {
+      // in the order drawn: sums are in floats
+      if (!((occluded_bits_[k / 32] >> (k % 32)) & 1u)) radiance += contributions_[k];
     }
   }
   light_rays_.clear();
-  contributions_.clear();
   light_owners_.clear();
+  contributions_.clear();
 }
 
 bool BatchIntegrator::render(Cells cells, std::uint32_t first, std::uint32_t count,

@@ -2,6 +2,7 @@
 
 #include "core/surface_point.h"
 #include "parallel/cancel.h"
+#include "render/bundle_batch.h"
 #include "render/cells.h"
 #include "render/context.h"
 #include "render/film.h"
@@ -33,6 +34,7 @@ class BatchIntegrator {
   void start(std::size_t begin, std::size_t end, std::uint32_t first);
   void shade();
   bool light(const Cancel& cancel);
+  void begin_light(std::uint32_t path);
   void flush_light();
 
   RenderContext context_;
@@ -42,9 +44,9 @@ class BatchIntegrator {
   std::vector<Hit> hits_;
   std::vector<SurfacePoint> points_;
   std::vector<PixelSample> results_;
-  RayBatch light_rays_;
+  BundleBatch light_rays_;
+  std::vector<std::uint32_t> light_owners_;  // the path of each of their points
   std::vector<Vec3> contributions_;          // of each light ray, if it arrives
-  std::vector<std::uint32_t> light_owners_;  // the path that cast it
   std::vector<std::uint32_t> occluded_bits_;
   std::uint64_t rays_ = 0;
 };

@@ -19,6 +19,11 @@ float cosine_share(EnvironmentSampling sampling, bool uniform_world) {
   return 1.0f;
 }
 
+/// Light rays per camera sample when the settings leave it open. Four bring the most per second:
+/// the camera ray, its hit point and the film are shared by more, but their error at edges is not
+/// (figures in docs/performance.md). As one Sobol' set they are stratified over the whole pixel.
+constexpr std::uint32_t kAutomaticLightSamples = 4;
+
 }  // namespace
 
 RenderContext make_context(const Scene& scene, const Settings& settings, const FilterView& filter) {
@@ -35,7 +40,8 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.cosine_share = cosine_share(settings.environment_sampling, scene.world_is_uniform());
   context.transparent = settings.film_transparent;
   context.seed = settings.seed;
-  context.light_samples = std::max(1u, settings.light_samples);
+  context.light_samples =
+      settings.light_samples > 0 ? settings.light_samples : kAutomaticLightSamples;
   return context;
 }
 
