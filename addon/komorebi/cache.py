@@ -1,9 +1,10 @@
 """The one place for what outlives a frame: native meshes and environments, found by content.
 
 A key is a digest of everything that the object was made from, so an entry can be old but never
-wrong. Entries that two frames in a row did not use go; so do the longest unused ones beyond the
-limit, and all of them when a file is loaded, when the add-on is switched off, and after a render
-unless Persistent Data asks to keep them.
+wrong. Entries that two frames in a row did not use go, and before new ones are made so do the
+longest unused ones beyond the limit. All go when a file is loaded and when the add-on is switched
+off. After a render in a window they stay only if Persistent Data asks for it; in background the
+next render of a batch finds them, unless they are beyond the limit.
 """
 
 from __future__ import annotations
@@ -43,12 +44,21 @@ def next_generation() -> None:
     _generation += 1
 
 
-def trim() -> None:
-    """Drops the longest unused entries until the rest is within the limit."""
+def make_room(wanted: set[bytes | None]) -> None:
+    """Drops the longest unused entries beyond the limit, but none that is wanted now."""
     total = byte_count()
-    while total > LIMIT_BYTES and _entries:
-        _, (value, _) = _entries.popitem(last=False)
-        total -= value.byte_count
+    for key in [k for k in _entries if k not in wanted]:
+        if total <= LIMIT_BYTES:
+            break
+        total -= _entries.pop(key)[0].byte_count
+
+
+def end_job(keep: bool) -> None:
+    """A still or an animation is done: nothing stays, or with `keep` what is within the limit."""
+    if keep:
+        make_room(set())
+    else:
+        clear()
 
 
 def byte_count() -> int:

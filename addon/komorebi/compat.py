@@ -35,28 +35,47 @@ def positions(mesh: Any) -> FloatArray:
     return result.reshape(-1, 3)
 
 
+# foreach_get copies memory only into an array of the property's very type, and these indices are
+# unsigned by Blender's own word: int32 takes item by item, 15 times longer.
+
+
 def corner_verts(mesh: Any) -> IntArray:
     """The vertex of each corner [corners]."""
-    result = np.empty(len(mesh.loops), np.int32)
     if GENERIC_ATTRIBUTES:
+        result = np.empty(len(mesh.loops), np.int32)
         mesh.attributes[".corner_vert"].data.foreach_get("value", result)
-    else:
-        mesh.loops.foreach_get("vertex_index", result)
-    return result
+        return result
+    unsigned = np.empty(len(mesh.loops), np.uint32)
+    mesh.loops.foreach_get("vertex_index", unsigned)
+    return unsigned.view(np.int32)
 
 
-def face_ranges(mesh: Any) -> tuple[IntArray, IntArray]:
-    """First corner and number of corners of each face [faces]."""
+def face_offsets(mesh: Any) -> tuple[IntArray, IntArray | None]:
+    """First corner of each face and the number of corners [faces + 1], in the order of faces.
+
+    Old releases allow faces whose corners lie anywhere: then also the corners in that order.
+    """
     faces, corners = len(mesh.polygons), len(mesh.loops)
-    if GENERIC_ATTRIBUTES and corners == 3 * faces:
-        return np.arange(0, corners, 3, dtype=np.int32), np.full(faces, 3, np.int32)
-    starts = np.empty(faces, np.int32)
-    mesh.polygons.foreach_get("loop_start", starts)
+    starts = np.empty(faces + 1, np.uint32)
+    mesh.polygons.foreach_get("loop_start", starts[:-1])
+    starts[-1] = corners
+    offsets = starts.view(np.int32)
     if GENERIC_ATTRIBUTES:  # faces lie one after the other
-        return starts, np.diff(starts, append=np.int32(corners)).astype(np.int32)
-    totals = np.empty(faces, np.int32)
+        return offsets, None
+    totals = np.empty(faces, np.uint32)
     mesh.polygons.foreach_get("loop_total", totals)
-    return starts, totals
+    if starts[0] == 0 and np.array_equal(starts[:-1] + totals, starts[1:]):
+        return offsets, None
+    return face_order(offsets[:-1], totals.view(np.int32))
+
+
+def face_order(starts: IntArray, totals: IntArray) -> tuple[IntArray, IntArray]:
+    """Offsets [faces + 1] of faces one after the other, and which corners they then take."""
+    offsets = np.zeros(len(starts) + 1, np.int32)
+    np.cumsum(totals, out=offsets[1:])
+    order: IntArray = np.arange(offsets[-1], dtype=np.int32)
+    order += np.repeat(starts - offsets[:-1], totals)
+    return offsets, order
 
 
 def smooth_faces(mesh: Any) -> BoolArray:
@@ -74,28 +93,13 @@ def smooth_faces(mesh: Any) -> BoolArray:
     return ~result
 
 
-def corner_normals(mesh: Any, verts: IntArray) -> FloatArray:
-    """Shading normals [corners, 3]; `verts` as `corner_verts` gives them."""
-    if CORNER_NORMALS and _has_corner_normals(mesh):
-        result = np.empty(len(mesh.loops) * 3, np.float32)
-        mesh.corner_normals.foreach_get("vector", result)
-        return result.reshape(-1, 3)
-    if not CORNER_NORMALS and mesh.use_auto_smooth:
-        result = np.empty(len(mesh.loops) * 3, np.float32)
-        mesh.calc_normals_split()
-        mesh.loops.foreach_get("normal", result)
-        mesh.free_normals_split()
-        return result.reshape(-1, 3)
-    result = np.empty(len(mesh.vertices) * 3, np.float32)
-    mesh.vertex_normals.foreach_get("vector", result)
-    return result.reshape(-1, 3)[verts]
-
-
-def _has_corner_normals(mesh: Any) -> bool:
+def has_corner_normals(mesh: Any) -> bool:
     """Whether the corners of a vertex differ, as Cycles sees it: by custom normals or sharp edges.
 
     Flat faces beside smooth ones do not count, though Blender's own corner normals split there.
     """
+    if not CORNER_NORMALS:
+        return bool(mesh.use_auto_smooth)
     if mesh.has_custom_normals:
         return True
     sharp = mesh.attributes.get("sharp_edge")
@@ -104,6 +108,25 @@ def _has_corner_normals(mesh: Any) -> bool:
     result = np.empty(len(mesh.edges), np.bool_)
     sharp.data.foreach_get("value", result)
     return bool(result.any())
+
+
+def corner_normals(mesh: Any) -> FloatArray:
+    """Shading normals by corner [corners, 3]."""
+    result = np.empty(len(mesh.loops) * 3, np.float32)
+    if CORNER_NORMALS:
+        mesh.corner_normals.foreach_get("vector", result)
+    else:
+        mesh.calc_normals_split()
+        mesh.loops.foreach_get("normal", result)
+        mesh.free_normals_split()
+    return result.reshape(-1, 3)
+
+
+def vertex_normals(mesh: Any) -> FloatArray:
+    """Shading normals by vertex [vertices, 3]."""
+    result = np.empty(len(mesh.vertices) * 3, np.float32)
+    mesh.vertex_normals.foreach_get("vector", result)
+    return result.reshape(-1, 3)
 
 
 def face_materials(mesh: Any) -> IntArray | None:

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import bpy
 
 from . import background, core, dump, jobs, native_scene, reporting
 from .errors import RenderCancelled, RenderError
 from .export import export_scene
+from .export.camera import export_camera
 from .export.names import name_of
 from .export.settings import export_settings
 from .framing import Region, render_region
 from .passes import Pass, enabled_passes
 from .progress import Progress
 from .result import ResultWriter
-from .scene_data import SceneData
+from .scene_data import CameraData, SceneData
 from .views import active_views
+
+T = TypeVar("T")
 
 TILE_SIZE = 64
 
@@ -27,7 +31,7 @@ class View:
     """One eye of a frame ("" when there is only one)."""
 
     name: str
-    scene: SceneData
+    camera: CameraData
 
 
 @dataclass(slots=True)
@@ -38,6 +42,7 @@ class Frame:
     region: Region
     passes: list[Pass]
     settings: dict[str, Any]
+    scene: SceneData
     views: list[View]
 
 
@@ -52,39 +57,52 @@ def export_frame(engine: Any, depsgraph: Any) -> Frame | None:
     if region[0] >= region[2] or region[1] >= region[3]:
         raise RenderError("The render border holds no pixel")
     passes = enabled_passes(depsgraph.view_layer)
-    views = [View(name, export_scene(engine, depsgraph, name)) for name in active_views(scene)]
+    names = active_views(scene)
+    data = export_scene(engine, depsgraph, names[0])
+    views = [View(names[0], data.camera)]
+    views += [View(name, export_camera(engine, depsgraph, name)) for name in names[1:]]
     settings = export_settings(scene, passes, region)
-    return Frame(layer, region, passes, settings, views)
+    return Frame(layer, region, passes, settings, data, views)
 
 
 def render_frame(engine: Any, _depsgraph: Any, frame: Frame) -> None:
     """Renders the exported views one after the other."""
+    engine.update_stats("", f"{frame.layer} | Building the scene")
+    native, threads = core.load(), frame.settings["threads"]
+    cancel = native.Cancel()
+    parts = _native_work(
+        engine, cancel, lambda: native_scene.load(native, frame.scene, threads, cancel)
+    )
+    _warn_environment(engine, parts.environment)
     for view in frame.views:
-        _render_view(engine, frame, view)
+        _render_view(engine, frame, parts, view)
         if engine.test_break():
             return
 
 
-def _render_view(engine: Any, frame: Frame, view: View) -> None:
-    native = core.load()
-    progress = Progress(
-        engine, f"{frame.layer}, {view.name}" if view.name else frame.layer,
-        _tile_count(frame.region), _ignored(view.scene),
-    )  # fmt: skip
-    progress.stage("Building the scene")
-    cancel = native.Cancel()
-    threads = frame.settings["threads"]
+def _native_work(engine: Any, cancel: Any, work: Callable[[], T]) -> T:
+    """The result of `work()` on a thread; its failures as RenderError and RenderCancelled."""
     try:
-        scene, environment = background.run(
-            lambda: native_scene.build(native, view.scene, threads, cancel),
-            engine.test_break, cancel,
-        )  # fmt: skip
-        settings = native.Settings(tile_size=TILE_SIZE, **frame.settings)
-    except native.Cancelled:
+        return background.run(work, engine.test_break, cancel)
+    except core.load().Cancelled:
         raise RenderCancelled from None
     except (ValueError, RuntimeError) as error:  # the core's sentences
         raise RenderError(str(error)) from error
-    _warn_environment(engine, environment)
+
+
+def _render_view(engine: Any, frame: Frame, parts: native_scene.Parts, view: View) -> None:
+    native, data, threads = core.load(), frame.scene, frame.settings["threads"]
+    progress = Progress(
+        engine, f"{frame.layer}, {view.name}" if view.name else frame.layer,
+        _tile_count(frame.region), _ignored(data),
+    )  # fmt: skip
+    cancel = native.Cancel()
+
+    def build() -> tuple[Any, Any]:
+        scene = native_scene.build(native, data, parts, view.camera, threads, cancel)
+        return scene, native.Settings(tile_size=TILE_SIZE, **frame.settings)
+
+    scene, settings = _native_work(engine, cancel, build)
     if dump.write(scene, settings):
         return
     writer = ResultWriter(engine, frame.layer, view.name, frame.region, frame.passes)

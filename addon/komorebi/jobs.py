@@ -50,8 +50,7 @@ def _on_end(scene: Any, *_: Any) -> None:
         _stack.pop()
     if not _stack:
         reporting.end()
-        if not scene.render.use_persistent_data:
-            cache.clear()
+        cache.end_job(keep=bpy.app.background or scene.render.use_persistent_data)
 
 
 @persistent

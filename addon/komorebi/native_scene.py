@@ -4,63 +4,90 @@ from __future__ import annotations
 
 import hashlib
 import os
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-import numpy as np
+from numpy.typing import NDArray
 
 from . import cache
-from .scene_data import EnvironmentImage, MeshData, SceneData, WorldData
+from .scene_data import CameraData, EnvironmentImage, MeshData, SceneData
 
 
-def build(core: Any, data: SceneData, threads: int, cancel: Any) -> tuple[Any, Any | None]:
-    """A committed core.Scene, and its core.Environment if it has one.
+@dataclass(slots=True)
+class Parts:
+    """What all views of a frame share, in the core's own form."""
+
+    meshes: list[Any] = field(default_factory=list)  # core.Mesh, as SceneData.meshes
+    environment: Any | None = None  # core.Environment
+
+
+def load(core: Any, data: SceneData, threads: int, cancel: Any) -> Parts:
+    """The core's meshes with their trees, and its environment: those it knows, or new ones.
 
     Arrays of a mesh are dropped as soon as the core has its own. Raises what the core raises:
     ValueError and RuntimeError with a sentence, core.Cancelled.
     """
-    scene = core.Scene()
-    indices = []
+    keys = [b"mesh" + _digest(core, mesh.arrays(), threads) for mesh in data.meshes]
+    image = data.world.image
+    image_key = None if image is None else _image_key(core, image, threads)
+    cache.make_room({*keys, image_key})
+    parts = Parts()
     for index, mesh in enumerate(data.meshes):
-        key = b"mesh" + mesh.digest()
-        native = cache.get(key, partial(_native_mesh, core, mesh, threads, cancel))
-        indices.append(scene.add_mesh(native))
+        make = partial(_native_mesh, core, mesh, threads, cancel)
+        parts.meshes.append(cache.get(keys[index], make))
         data.meshes[index] = None  # type: ignore[call-overload]
+    if image is not None and image_key is not None:
+        parts.environment = cache.get(image_key, partial(_native_environment, core, image))
+    return parts
+
+
+def build(
+    core: Any, data: SceneData, parts: Parts, camera: CameraData, threads: int, cancel: Any
+) -> Any:
+    """A committed core.Scene, seen by `camera`; only the tree over instances is built here."""
+    scene = core.Scene()
+    indices = [scene.add_mesh(mesh) for mesh in parts.meshes]
     for group in data.instances:
         scene.add_instances(
             indices[group.mesh], group.matrices, group.object_index,
             mask=group.mask, flags=group.flags, name=group.name,
         )  # fmt: skip
-    environment = _set_world(core, scene, data.world)
-    camera = data.camera
+    world = data.world
+    if parts.environment is None:
+        scene.set_world_color(world.color)
+    else:
+        scene.set_world_environment(
+            parts.environment,
+            strength=world.strength, texture_from_world=world.texture_from_world,
+        )  # fmt: skip
     scene.set_camera(
         camera.kind, camera.clip_from_world, camera.clip_start, camera.clip_end,
         camera.width, camera.height,
     )  # fmt: skip
     scene.commit(threads=threads, cancel=cancel)
-    cache.trim()
-    return scene, environment
+    return scene
+
+
+def _digest(core: Any, arrays: Iterable[NDArray[Any] | None], threads: int) -> bytes:
+    """128 bits, equal for equal content; of use in this process alone."""
+    digest = hashlib.blake2b(digest_size=16)
+    for array in arrays:
+        digest.update(b"-" if array is None else repr((array.dtype.str, array.shape)).encode())
+        if array is not None:
+            digest.update(core.content_tags(array, threads=threads))
+    return digest.digest()
 
 
 def _native_mesh(core: Any, mesh: MeshData, threads: int, cancel: Any) -> Any:
     return core.Mesh(
         mesh.name, mesh.positions, mesh.corner_verts, mesh.face_offsets,
         tri2corner=mesh.tri2corner, tri2face=mesh.tri2face, corner_normals=mesh.corner_normals,
-        smooth_faces=mesh.smooth_faces, face_materials=mesh.face_materials,
+        vertex_normals=mesh.vertex_normals, smooth_faces=mesh.smooth_faces,
+        face_materials=mesh.face_materials,
         threads=threads, cancel=cancel,
     )  # fmt: skip
-
-
-def _set_world(core: Any, scene: Any, world: WorldData) -> Any | None:
-    if world.image is None:
-        scene.set_world_color(world.color)
-        return None
-    image = world.image
-    environment = cache.get(_image_key(image), lambda: _native_environment(core, image))
-    scene.set_world_environment(
-        environment, strength=world.strength, texture_from_world=world.texture_from_world
-    )
-    return environment
 
 
 def _native_environment(core: Any, image: EnvironmentImage) -> Any:
@@ -69,16 +96,12 @@ def _native_environment(core: Any, image: EnvironmentImage) -> Any:
     return core.Environment.from_file(image.path, color_space=image.color_space)
 
 
-def _image_key(image: EnvironmentImage) -> bytes:
-    digest = hashlib.blake2b(digest_size=16)
+def _image_key(core: Any, image: EnvironmentImage, threads: int) -> bytes:
     if image.pixels is not None:
-        digest.update(repr(image.pixels.shape).encode())
-        digest.update(np.ascontiguousarray(image.pixels).data)
-    else:
-        # A file is known by path, size and time of change; reading it all would cost as much
-        # as loading it.
-        assert image.path is not None
-        status = os.stat(image.path)
-        stamp = (image.path, image.color_space, status.st_size, status.st_mtime_ns, status.st_ino)
-        digest.update(repr(stamp).encode("utf-8", "surrogateescape"))
-    return b"image" + digest.digest()
+        return b"pixels" + _digest(core, (image.pixels,), threads)
+    # A file is known by path, size and time of change; reading it all would cost as much as
+    # loading it.
+    assert image.path is not None
+    status = os.stat(image.path)
+    stamp = (image.path, image.color_space, status.st_size, status.st_mtime_ns, status.st_ino)
+    return b"file" + repr(stamp).encode("utf-8", "surrogateescape")

@@ -1,6 +1,8 @@
 # mypy: disable-error-code="valid-type,attr-defined,func-returns-value"
 """The settings of a scene, `scene.komorebi`. Scripts rely on these names and defaults."""
 
+from typing import Any
+
 import bpy
 from bpy.props import (
     BoolProperty,
@@ -38,11 +40,37 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         name="Method", description="What is computed", items=METHODS, default="AMBIENT_OCCLUSION"
     )
     samples: IntProperty(
-        name="Samples", description="Camera samples a pixel", default=128, min=1, max=1 << 24
+        name="Samples",
+        description="Camera samples a pixel; with a noise threshold the most that one may take",
+        default=128, min=1, max=1 << 24,
+    )  # fmt: skip
+    use_adaptive_sampling: BoolProperty(
+        name="Use Adaptive Sampling",
+        description="Stop sampling each part of the picture when its noise is below the threshold",
+        default=False,
     )
+    adaptive_threshold: FloatProperty(
+        name="Noise Threshold",
+        description="Noise at which sampling stops: lower values cost more time; "
+        "0 chooses it from the number of samples",
+        default=0.01, min=0.0, max=1.0, soft_min=0.001, precision=4,
+    )  # fmt: skip
+    adaptive_min_samples: IntProperty(
+        name="Min Samples",
+        description="Samples before the first stop, so that small features are not missed; "
+        "0 chooses it from the noise threshold",
+        default=0, min=0, max=4096,
+    )  # fmt: skip
+    time_limit: FloatProperty(
+        name="Time Limit",
+        description="Ends the render after the samples that fit in this time, scene export and "
+        "build not counted; 0 is no limit. The log says how many samples there were",
+        default=0.0, min=0.0, step=100, unit="TIME_ABSOLUTE",
+    )  # fmt: skip
     light_samples: IntProperty(
-        name="Light Samples", description="Light rays for each camera sample",
-        default=1, min=1, max=1024,
+        name="Light Samples",
+        description="Light rays for each camera sample; 0 chooses how many",
+        default=0, min=0, max=1024,
     )  # fmt: skip
     sample_offset: IntProperty(
         name="Sample Offset",
@@ -88,11 +116,31 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
     )  # fmt: skip
 
 
+def _update_render_passes(self: Any, context: Any) -> None:
+    """Lets the compositor's sockets follow a pass that is switched on or off."""
+    context.scene.update_render_passes()
+
+
+class KomorebiViewLayerSettings(bpy.types.PropertyGroup):
+    """Settings of a view layer for the Komorebi render engine"""
+
+    pass_debug_sample_count: BoolProperty(
+        name="Debug Sample Count", description="Number of camera samples of each pixel",
+        default=False, update=_update_render_passes,
+    )  # fmt: skip
+
+
 def register() -> None:
     bpy.utils.register_class(KomorebiSceneSettings)
+    bpy.utils.register_class(KomorebiViewLayerSettings)
     bpy.types.Scene.komorebi = PointerProperty(name="Komorebi Settings", type=KomorebiSceneSettings)
+    bpy.types.ViewLayer.komorebi = PointerProperty(
+        name="Komorebi View Layer Settings", type=KomorebiViewLayerSettings
+    )
 
 
 def unregister() -> None:
+    del bpy.types.ViewLayer.komorebi
     del bpy.types.Scene.komorebi
+    bpy.utils.unregister_class(KomorebiViewLayerSettings)
     bpy.utils.unregister_class(KomorebiSceneSettings)

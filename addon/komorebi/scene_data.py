@@ -5,8 +5,8 @@ World space is Blender's: metres, Z up. Rows run bottom-up, colours are scene-li
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,21 +28,17 @@ class MeshData:
     face_offsets: IntArray  # [faces + 1]
     tri2corner: IntArray | None = None  # [triangles, 3]; None: no face has more than 4 corners
     tri2face: IntArray | None = None  # [triangles]; with tri2corner
-    corner_normals: FloatArray | None = None  # [corners, 3]; None: flat
-    smooth_faces: BoolArray | None = None  # [faces]; None: all as corner_normals says
+    corner_normals: FloatArray | None = None  # [corners, 3]
+    vertex_normals: FloatArray | None = None  # [vertices, 3]; with neither all faces are flat
+    smooth_faces: BoolArray | None = None  # [faces]; None: all smooth if there are normals
     face_materials: IntArray | None = None  # [faces]; None: all slot 0
 
-    def digest(self) -> bytes:
-        """Equal for equal content, whatever its name; 128 bits."""
-        digest = hashlib.blake2b(digest_size=16)
-        for array in (
+    def arrays(self) -> tuple[NDArray[Any] | None, ...]:
+        """All that two meshes need to share to be the same one, whatever their names."""
+        return (
             self.positions, self.corner_verts, self.face_offsets, self.tri2corner, self.tri2face,
-            self.corner_normals, self.smooth_faces, self.face_materials,
-        ):  # fmt: skip
-            digest.update(b"-" if array is None else repr((array.dtype.str, array.shape)).encode())
-            if array is not None:
-                digest.update(np.ascontiguousarray(array).data)
-        return digest.digest()
+            self.corner_normals, self.vertex_normals, self.smooth_faces, self.face_materials,
+        )  # fmt: skip
 
 
 @dataclass(slots=True)

@@ -37,10 +37,32 @@ class KOMOREBI_RENDER_PT_sampling(KomorebiPanel, bpy.types.Panel):
     bl_label = "Sampling"
 
     def draw(self, context: Any) -> None:
+        pass  # all of it is in the panels below
+
+
+class KOMOREBI_RENDER_PT_sampling_render(KomorebiPanel, bpy.types.Panel):
+    bl_label = "Render"
+    bl_parent_id = "KOMOREBI_RENDER_PT_sampling"
+
+    def draw(self, context: Any) -> None:
         settings = context.scene.komorebi
         column = self.column()
-        column.prop(settings, "samples")
-        column.prop(settings, "light_samples")
+        in_parts = settings.sample_offset > 0  # where the parts would stop at different samples
+        heading = column.column(align=True, heading="Noise Threshold")
+        heading.enabled = not in_parts
+        row = heading.row(align=True)
+        row.prop(settings, "use_adaptive_sampling", text="")
+        sub = row.row()
+        sub.active = settings.use_adaptive_sampling
+        sub.prop(settings, "adaptive_threshold", text="")
+        column = column.column(align=True)
+        if settings.use_adaptive_sampling and not in_parts:
+            column.prop(settings, "samples", text="Max Samples")
+            column.prop(settings, "adaptive_min_samples")
+        else:
+            column.prop(settings, "samples")
+        column.prop(settings, "time_limit")
+        self.layout.prop(settings, "light_samples")
 
 
 class KOMOREBI_RENDER_PT_sampling_advanced(KomorebiPanel, bpy.types.Panel):
@@ -127,6 +149,7 @@ class KOMOREBI_VIEWLAYER_PT_passes(KomorebiPanel, bpy.types.Panel):
         column = self.column().column(heading="Include")
         column.prop(context.view_layer, "use_pass_z", text="Depth")
         column.prop(context.view_layer, "use_pass_normal", text="Normal")
+        column.prop(context.view_layer.komorebi, "pass_debug_sample_count", text="Sample Count")
 
 
 class KOMOREBI_WORLD_PT_surface(KomorebiPanel, bpy.types.Panel):
@@ -151,6 +174,7 @@ def draw_method(self: Any, context: Any) -> None:
 
 CLASSES = (
     KOMOREBI_RENDER_PT_sampling,
+    KOMOREBI_RENDER_PT_sampling_render,
     KOMOREBI_RENDER_PT_sampling_advanced,
     KOMOREBI_RENDER_PT_ambient_occlusion,
     KOMOREBI_RENDER_PT_surface,

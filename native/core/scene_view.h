@@ -42,8 +42,9 @@ struct MeshView {
   std::uint32_t position_sets = 1;         ///< 1 = still; n sets of vertex_count positions in time
   const float* vtx2xyz = nullptr;          ///< [position_sets][vertex_count][3]
   const std::uint32_t* tri2vtx = nullptr;  ///< [triangle_count][3]
-  const float* corner2normal = nullptr;    ///< [triangle_count][3][3], unit; null: all flat
-  const std::uint8_t* tri2smooth = nullptr;  ///< [triangle_count]; null: all as corner2normal says
+  const float* normals = nullptr;          ///< [by vertex or by corner][3], unit; null: all flat
+  const std::uint32_t* tri2normal = nullptr;    ///< [triangle_count][3], rows of `normals`
+  const std::uint8_t* tri2smooth = nullptr;     ///< [triangle_count]; null: all smooth if `normals`
   const std::uint16_t* tri2material = nullptr;  ///< [triangle_count]; null: all slot 0
   const AttributeView* attributes = nullptr;
   std::uint32_t attribute_count = 0;

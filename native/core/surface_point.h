@@ -128,11 +128,13 @@ inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit, const 
       unit_or(glm::cross(unit_or(along_ab, along_ab), unit_or(along_ac, along_ac)), Vec3(0, 0, 1));
   point.geometric_normal = unit_or(normal_transform * local_cross, -ray.direction);
   point.normal = point.geometric_normal;
-  if (mesh.corner2normal && (!mesh.tri2smooth || mesh.tri2smooth[tri])) {
-    const float* n = mesh.corner2normal + 9 * tri;
+  if (mesh.normals && (!mesh.tri2smooth || mesh.tri2smooth[tri])) {
+    const auto normal = [&](std::size_t corner) {
+      const float* n = mesh.normals + 3 * std::size_t{mesh.tri2normal[3 * tri + corner]};
+      return Vec3(n[0], n[1], n[2]);
+    };
     const float w = 1.0f - hit.u - hit.v;  // normals vary slowly: the tracer's own will do
-    const Vec3 smooth = w * Vec3(n[0], n[1], n[2]) + hit.u * Vec3(n[3], n[4], n[5]) +
-                        hit.v * Vec3(n[6], n[7], n[8]);
+    const Vec3 smooth = w * normal(0) + hit.u * normal(1) + hit.v * normal(2);
     point.normal = unit_or(normal_transform * smooth, point.geometric_normal);
   }
   if (glm::dot(point.geometric_normal, ray.direction) > 0.0f) {

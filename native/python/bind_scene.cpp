@@ -6,6 +6,7 @@
 #include "io/image.h"
 #include "python/arrays.h"
 #include "python/bind.h"
+#include "render/content_hash.h"
 #include "render/scene.h"
 
 namespace komorebi::python {
@@ -15,8 +16,9 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
                                 const py::object& corner_verts, const py::object& face_offsets,
                                 const py::object& tri2corner, const py::object& tri2face,
                                 const py::object& corner_normals, const py::object& smooth_faces,
-                                const py::object& face_materials, const std::string& builder,
-                                unsigned threads, const std::shared_ptr<Cancel>& cancel) {
+                                const py::object& face_materials, const py::object& vertex_normals,
+                                const std::string& builder, unsigned threads,
+                                const std::shared_ptr<Cancel>& cancel) {
   const std::string mesh = "mesh \"" + name + "\": ";
   MeshInput input;
   input.name = name;
@@ -26,6 +28,7 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
   input.tri2corner = optional_view<std::int32_t>(tri2corner, mesh + "tri2corner", {-1, 3});
   input.tri2face = optional_view<std::int32_t>(tri2face, mesh + "tri2face", {-1});
   input.corner2normal = optional_view<float>(corner_normals, mesh + "corner_normals", {-1, 3});
+  input.vtx2normal = optional_view<float>(vertex_normals, mesh + "vertex_normals", {-1, 3});
   const auto smooth = optional_view<bool>(smooth_faces, mesh + "smooth_faces", {-1});
   input.face2smooth = {reinterpret_cast<const std::uint8_t*>(smooth.data()), smooth.size()};
   input.face2material = optional_view<std::int32_t>(face_materials, mesh + "face_materials", {-1});
@@ -37,10 +40,24 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
 }
 
 py::array_t<std::int32_t> mesh_tri2corner(const Mesh& mesh) {
-  const auto& corners = mesh.tri2corner();
+  const auto corners = mesh.tri2corner();
   py::array_t<std::int32_t> out({static_cast<py::ssize_t>(corners.size() / 3), py::ssize_t{3}});
   std::copy(corners.begin(), corners.end(), out.mutable_data());
   return out;
+}
+
+py::bytes tags_of(const py::array& array, unsigned threads) {
+  if (!(array.flags() & py::array::c_style)) {
+    throw std::invalid_argument("content_tags needs an array that is contiguous in C order");
+  }
+  const std::span data(static_cast<const std::byte*>(array.data()),
+                       static_cast<std::size_t>(array.nbytes()));
+  std::vector<std::uint64_t> tags;
+  {
+    const py::gil_scoped_release release;
+    tags = content_tags(data, *build_pool(threads));
+  }
+  return {reinterpret_cast<const char*>(tags.data()), tags.size() * sizeof(tags[0])};
 }
 
 std::shared_ptr<Environment> environment_from_file(const std::string& path,
@@ -141,14 +158,15 @@ void bind_mesh(py::module_& module) {
 name: for messages. positions: float32 [V, 3], object space, metres. corner_verts: int32 [C].
 face_offsets: int32 [F + 1], first corner of each face. tri2corner int32 [T, 3] and tri2face
 int32 [T]: Blender's loop triangles; None if every face has three or four corners.
-corner_normals: float32 [C, 3], unit; None if every face is flat. smooth_faces: bool [F], None if
-all are smooth. face_materials: int32 [F]. builder: LINEAR, PRINCIPAL_AXIS or LIST.
+corner_normals: float32 [C, 3], or vertex_normals: float32 [V, 3], unit; a row that is not finite
+counts as none, and without both every face is flat. smooth_faces: bool [F], None if all are smooth. face_materials: int32 [F]. builder: LINEAR, PRINCIPAL_AXIS or LIST.
 Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
            py::arg("name"), py::arg("positions"), py::arg("corner_verts"), py::arg("face_offsets"),
            py::kw_only(), py::arg("tri2corner") = py::none(), py::arg("tri2face") = py::none(),
            py::arg("corner_normals") = py::none(), py::arg("smooth_faces") = py::none(),
-           py::arg("face_materials") = py::none(), py::arg("builder") = "LINEAR",
-           py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>())
+           py::arg("face_materials") = py::none(), py::arg("vertex_normals") = py::none(),
+           py::arg("builder") = "LINEAR", py::arg("threads") = 0,
+           py::arg("cancel") = std::shared_ptr<Cancel>())
       .def_property_readonly("name", &Mesh::name)
       .def_property_readonly("triangle_count", &Mesh::triangle_count)
       .def_property_readonly("vertex_count", &Mesh::vertex_count)
@@ -177,6 +195,9 @@ void bind_environment(py::module_& module) {
 }  // namespace
 
 void bind_scene(py::module_& module) {
+  module.def("content_tags", &tags_of, py::arg("array"), py::arg("threads") = 0,
+             "32 bytes for each 4096 of the array's, to be hashed on: two different blocks share "
+             "them with probability 2^-128. Of use within this process alone.");
   bind_mesh(module);
   bind_environment(module);
   py::class_<Scene, std::shared_ptr<Scene>>(

@@ -26,9 +26,12 @@ void put_mesh(ArrayFile& file, const std::string& key, const Mesh& mesh) {
   file.put<double>(key + "origin", span_of(glm::value_ptr(mesh.origin()), 3), {3});
   put_rows<float>(file, key + "vtx2xyz", span_of(v.vtx2xyz, 3 * std::size_t{v.vertex_count}), 3);
   put_rows<std::uint32_t>(file, key + "tri2vtx", span_of(v.tri2vtx, 3 * triangles), 3);
-  if (v.corner2normal) {
-    file.put<float>(key + "corner2normal", span_of(v.corner2normal, 9 * triangles),
-                    {triangles, 3, 3});
+  if (v.normals) {
+    std::vector<float> normals(9 * triangles);
+    for (std::size_t k = 0; k < 3 * triangles; ++k) {
+      std::copy_n(v.normals + 3 * std::size_t{v.tri2normal[k]}, 3, &normals[3 * k]);
+    }
+    file.put<float>(key + "corner2normal", normals, {triangles, 3, 3});
   }
   if (v.tri2smooth) {
     file.put<std::uint8_t>(key + "tri2smooth", span_of(v.tri2smooth, triangles), {triangles});

@@ -9,6 +9,7 @@
 #include "bvh/mesh_tree.h"
 #include "bvh/topology.h"
 #include "core/scene_view.h"
+#include "parallel/array.h"
 #include "parallel/cancel.h"
 #include "parallel/thread_pool.h"
 
@@ -22,7 +23,8 @@ struct MeshInput {
   std::span<const std::int32_t> face_offsets;   ///< [faces + 1], first corner of each face
   std::span<const std::int32_t> tri2corner;     ///< [triangles][3]; empty: triangles and quads only
   std::span<const std::int32_t> tri2face;       ///< [triangles]; empty with tri2corner
-  std::span<const float> corner2normal;         ///< [corners][3]; empty: every face is flat
+  std::span<const float> corner2normal;         ///< [corners][3]
+  std::span<const float> vtx2normal;            ///< [vertices][3]; neither: every face is flat
   std::span<const std::uint8_t> face2smooth;    ///< [faces]; empty: every face is smooth
   std::span<const std::int32_t> face2material;  ///< [faces]; empty: slot 0
 };
@@ -50,23 +52,26 @@ class Mesh {
   std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(vtx2xyz_.size() / 3); }
   std::uint32_t degenerate_count() const { return tree_.degenerate_count; }
   const MeshTree& tree() const { return tree_; }
-  const std::vector<std::int32_t>& tri2corner() const { return tri2corner_; }
+  /// Which corners carry a triangle's UVs and normals, [triangles][3].
+  std::vector<std::int32_t> tri2corner() const;
   std::size_t byte_count() const;
 
  private:
   Mesh() = default;
-  void take_positions(std::span<const float> vtx2xyz);
-  void take_normals(const MeshInput& input, std::span<const std::int32_t> tri2face,
-                    ThreadPool& pool, const Cancel& cancel);
+  void take_positions(std::span<const float> vtx2xyz, ThreadPool& pool);
+  void take_triangles(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
+  void take_normals(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
+  void take_materials(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
 
   std::string name_;
   Vec3d origin_{0.0};
-  std::vector<float> vtx2xyz_;
-  std::vector<std::uint32_t> tri2vtx_;
-  std::vector<std::int32_t> tri2corner_;  // which corners carry UVs and normals, for baking
-  std::vector<float> corner2normal_;      // [triangles][3][3], or empty
-  std::vector<std::uint8_t> tri2smooth_;
-  std::vector<std::uint16_t> tri2material_;
+  Array<float> vtx2xyz_;
+  Array<std::uint32_t> tri2vtx_;
+  Array<std::uint32_t> tri2corner_;  // empty: triangle t has the corners 3 t, 3 t + 1, 3 t + 2
+  Array<float> normals_;             // as they came, by vertex or by corner; empty: flat
+  bool normals_by_corner_ = false;
+  Array<std::uint8_t> tri2smooth_;
+  Array<std::uint16_t> tri2material_;
   MeshTree tree_;
 };
 

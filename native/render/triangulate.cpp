@@ -14,45 +14,36 @@ bool halves_face_each_other(const Vec3& p0, const Vec3& p1, const Vec3& p2, cons
 
 }  // namespace
 
-bool only_triangles_and_quads(std::span<const std::int32_t> face_offsets) {
-  for (std::size_t f = 0; f + 1 < face_offsets.size(); ++f) {
-    if (face_offsets[f + 1] - face_offsets[f] > 4) return false;
-  }
-  return true;
-}
-
-Triangulation triangulate(std::span<const float> vtx2xyz, std::span<const std::int32_t> corner2vtx,
-                          std::span<const std::int32_t> face_offsets) {
-  const std::size_t faces = face_offsets.empty() ? 0 : face_offsets.size() - 1;
-  const std::size_t triangles = corner2vtx.size() - 2 * faces;  // n corners make n − 2
-  Triangulation result;
-  result.tri2corner.resize(3 * triangles);
-  result.tri2face.resize(triangles);
-  std::size_t next = 0;
-  const auto emit = [&](std::int32_t a, std::int32_t b, std::int32_t c, std::size_t face) {
-    result.tri2corner[3 * next] = a;
-    result.tri2corner[3 * next + 1] = b;
-    result.tri2corner[3 * next + 2] = c;
-    result.tri2face[next++] = static_cast<std::int32_t>(face);
-  };
-  const auto point = [&](std::int32_t corner) {
-    const float* p =
-        &vtx2xyz[3 * static_cast<std::size_t>(corner2vtx[static_cast<std::size_t>(corner)])];
+void triangulate(std::span<const float> vtx2xyz, std::span<const std::int32_t> corner2vtx,
+                 std::span<const std::int32_t> face_offsets, std::span<std::uint32_t> tri2corner,
+                 ThreadPool& pool, const Cancel& cancel) {
+  constexpr std::size_t kGrain = 1 << 14;
+  const auto point = [&](std::size_t corner) {
+    const float* p = &vtx2xyz[3 * static_cast<std::size_t>(corner2vtx[corner])];
     return Vec3(p[0], p[1], p[2]);
   };
-  for (std::size_t f = 0; f < faces; ++f) {
-    const std::int32_t c = face_offsets[f];
-    if (face_offsets[f + 1] - c == 3) {
-      emit(c, c + 1, c + 2, f);
-    } else if (halves_face_each_other(point(c), point(c + 1), point(c + 2), point(c + 3))) {
-      emit(c, c + 1, c + 3, f);
-      emit(c + 1, c + 2, c + 3, f);
-    } else {
-      emit(c, c + 1, c + 2, f);
-      emit(c, c + 2, c + 3, f);
+  const std::size_t faces = face_offsets.empty() ? 0 : face_offsets.size() - 1;
+  pool.for_each_chunk(faces, kGrain, [&](std::size_t begin, std::size_t end) {
+    if (cancel.raised()) throw Cancelled();
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto c = static_cast<std::uint32_t>(face_offsets[f]);
+      std::uint32_t* out = &tri2corner[3 * (c - 2 * f)];
+      const auto emit = [&out](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
+        *out++ = i;
+        *out++ = j;
+        *out++ = k;
+      };
+      if (face_offsets[f + 1] - face_offsets[f] == 3) {
+        emit(c, c + 1, c + 2);
+      } else if (halves_face_each_other(point(c), point(c + 1), point(c + 2), point(c + 3))) {
+        emit(c, c + 1, c + 3);
+        emit(c + 1, c + 2, c + 3);
+      } else {
+        emit(c, c + 1, c + 2);
+        emit(c, c + 2, c + 3);
+      }
     }
-  }
-  return result;
+  });
 }
 
 }  // namespace komorebi

@@ -33,7 +33,8 @@ def triangles_of_core(data):
     return core.Mesh(
         data.name, data.positions, data.corner_verts, data.face_offsets,
         tri2corner=data.tri2corner, tri2face=data.tri2face, corner_normals=data.corner_normals,
-        smooth_faces=data.smooth_faces, face_materials=data.face_materials,
+        vertex_normals=data.vertex_normals, smooth_faces=data.smooth_faces,
+        face_materials=data.face_materials,
     ).tri2corner()  # fmt: skip
 
 
@@ -65,8 +66,9 @@ def test_arrays_are_what_the_core_wants():
     assert mesh.corner_verts.shape == (24,)
     assert mesh.face_offsets.dtype == np.int32
     assert mesh.face_offsets[-1] == 24
-    assert mesh.corner_normals.dtype == np.float32
-    assert mesh.corner_normals.shape == (24, 3)
+    assert mesh.vertex_normals.dtype == np.float32
+    assert mesh.vertex_normals.shape == (8, 3)
+    assert mesh.corner_normals is None, "no corner differs from its vertex"
     assert mesh.smooth_faces.dtype == np.bool_
     assert mesh.smooth_faces.sum() == 1
     assert mesh.tri2corner is None
@@ -89,7 +91,8 @@ def test_same_arrays_through_every_route():
     assert np.array_equal(np.diff(data.face_offsets), [p.loop_total for p in monkey.polygons])
     assert np.array_equal(data.smooth_faces, [p.use_smooth for p in monkey.polygons])
     assert np.array_equal(data.face_materials, [p.material_index for p in monkey.polygons])
-    assert np.allclose(np.linalg.norm(data.corner_normals, axis=1), 1, atol=1e-4)
+    assert np.array_equal(data.vertex_normals, [n.vector[:] for n in monkey.vertex_normals])
+    assert np.allclose(np.linalg.norm(data.vertex_normals, axis=1), 1, atol=1e-4)
 
 
 def test_quads_are_split_as_blender_does():
@@ -260,7 +263,9 @@ def test_mirrored_and_far_matrices():
 
 def test_face_corners_anywhere():
     """Releases before 3.6 allow gaps: the order of faces wins."""
-    from komorebi.export.mesh import _face_order
+    from komorebi.compat import face_order
 
-    order = _face_order(np.array([7, 0, 4], np.int32), np.array([3, 4, 3], np.int32))
+    offsets, order = face_order(np.array([7, 0, 4], np.int32), np.array([3, 4, 3], np.int32))
+    assert offsets.tolist() == [0, 3, 7, 10]
     assert order.tolist() == [7, 8, 9, 0, 1, 2, 3, 4, 5, 6]
+    assert order.dtype == offsets.dtype == np.int32

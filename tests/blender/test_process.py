@@ -229,9 +229,53 @@ def test_persistent_data_reuses_meshes_and_never_shows_old_ones(folder):
     smaller = support.render(folder, "smaller")
     assert cache.misses == before + 1
     assert smaller[:, :, 3].sum() < 0.5 * moved[:, :, 3].sum()
-    scene.render.use_persistent_data = False
-    support.render(folder, "last")
-    assert cache.entry_count() == 0, "nothing is kept unless Persistent Data asks for it"
+
+
+def test_batch_and_view_layers_share_meshes(folder):
+    """Renders of one background process, and layers of one render, build a mesh once."""
+    from komorebi import cache
+
+    scene = bpy.context.scene
+    scene.view_layers.new("Second")
+    cache.clear()
+    before = cache.misses
+    support.render(folder, "first")
+    assert cache.misses == before + 1
+    scene.camera.location.x += 1
+    support.render(folder, "second")
+    assert cache.misses == before + 1, "another view builds nothing"
+    bpy.data.objects["Cube"].data.vertices[0].co.x = 3
+    support.render(folder, "third")
+    assert cache.misses == before + 2
+    support.render(folder, "fourth")
+    assert cache.entry_count() == 1, "what two renders did not use is gone"
+
+
+def test_cache_keeps_to_its_limit():
+    from komorebi import cache
+
+    class Thing:
+        byte_count = 10
+
+    limit, cache.LIMIT_BYTES = cache.LIMIT_BYTES, 25
+    try:
+        cache.clear()
+        for key in (b"a", b"b", b"c"):
+            cache.get(key, Thing)
+        cache.make_room({b"a"})
+        assert cache.entry_count() == 2, "the longest unused one goes"
+        before = cache.hits
+        cache.get(b"a", Thing)
+        cache.get(b"c", Thing)
+        assert cache.hits == before + 2
+        cache.LIMIT_BYTES = 15
+        cache.end_job(keep=True)
+        assert cache.entry_count() == 1
+        cache.end_job(keep=False)
+        assert cache.entry_count() == 0, "in a window nothing stays without Persistent Data"
+    finally:
+        cache.LIMIT_BYTES = limit
+        cache.clear()
 
 
 def test_dump(folder):
@@ -251,8 +295,11 @@ def test_stereo_renders_both_eyes(folder):
     scene.render.use_multiview = True
     scene.render.film_transparent = True
     scene.camera.data.stereo.interocular_distance = 1.0
-    with support.captured("driver.export_scene") as calls:
+    with (
+        support.captured("driver.export_frame") as frames,
+        support.captured("driver.export_scene") as scenes,
+    ):
         bpy.ops.render.render()
-    assert len(calls) == 2
-    left, right = (data.camera.clip_from_world for _, data in calls)
+    assert len(scenes) == 1, "the scene is exported once, whatever the number of eyes"
+    left, right = (view.camera.clip_from_world for view in frames[0][1].views)
     assert not np.allclose(left, right)

@@ -17,29 +17,27 @@ def export_mesh(mesh: Any, name: str) -> MeshData | None:
     if not len(mesh.polygons):
         return None
     verts = compat.corner_verts(mesh)
-    starts, totals = compat.face_ranges(mesh)
-    offsets = np.zeros(len(starts) + 1, np.int32)
-    np.cumsum(totals, out=offsets[1:])
-
+    offsets, order = compat.face_offsets(mesh)
     tri2corner = tri2face = None
-    if totals.max() > MAX_NATIVE_CORNERS:
+    if (offsets[1:] - offsets[:-1]).max() > MAX_NATIVE_CORNERS:
         tri2corner, tri2face = _loop_triangles(mesh)
     smooth = compat.smooth_faces(mesh)
-    normals = None
+    by_corner = by_vertex = None
     if smooth.any():
-        normals = compat.corner_normals(mesh, verts)
-        # Broken custom normals may hold anything: a zero makes the core use the flat normal.
-        normals[~np.isfinite(normals).all(axis=1)] = 0.0
+        if compat.has_corner_normals(mesh):
+            by_corner = compat.corner_normals(mesh)
+        else:
+            by_vertex = compat.vertex_normals(mesh)
 
-    if not np.array_equal(starts, offsets[:-1]) or offsets[-1] != len(verts):
-        order = _face_order(starts, totals)
+    if order is not None:
         if tri2corner is not None:
             new_corner = np.zeros(len(verts), np.int32)
             new_corner[order] = np.arange(len(order), dtype=np.int32)
             tri2corner = new_corner[tri2corner]
         verts = verts[order]
-        normals = None if normals is None else normals[order]
+        by_corner = None if by_corner is None else by_corner[order]
 
+    flat = by_corner is None and by_vertex is None
     return MeshData(
         name=name,
         positions=compat.positions(mesh),
@@ -47,8 +45,9 @@ def export_mesh(mesh: Any, name: str) -> MeshData | None:
         face_offsets=offsets,
         tri2corner=tri2corner,
         tri2face=tri2face,
-        corner_normals=normals,
-        smooth_faces=None if normals is None or smooth.all() else smooth,
+        corner_normals=by_corner,
+        vertex_normals=by_vertex,
+        smooth_faces=None if flat or smooth.all() else smooth,
         face_materials=compat.face_materials(mesh),
     )
 
@@ -62,10 +61,3 @@ def _loop_triangles(mesh: Any) -> tuple[IntArray, IntArray]:
     faces = np.empty(count, np.int32)
     mesh.loop_triangles.foreach_get("polygon_index", faces)
     return corners.reshape(-1, 3), faces
-
-
-def _face_order(starts: IntArray, totals: IntArray) -> IntArray:
-    """Old releases allow faces whose corners lie anywhere: the corners in the order of faces."""
-    first = np.repeat(starts - np.cumsum(totals) + totals, totals)
-    order: IntArray = (first + np.arange(int(totals.sum()))).astype(np.int32)
-    return order

@@ -26,6 +26,11 @@ def export_settings(
         "light_samples": settings.light_samples,
         "sample_offset": settings.sample_offset,
         "seed": seed,
+        # Parts of a picture have to take every sample, so that they can be put together.
+        "use_adaptive_sampling": settings.use_adaptive_sampling and settings.sample_offset == 0,
+        "adaptive_threshold": settings.adaptive_threshold,
+        "adaptive_min_samples": settings.adaptive_min_samples,
+        "time_limit": settings.time_limit,
         "ao_distance": settings.ao_distance,
         "ao_sampling": settings.ao_sampling,
         "clay_color": tuple(settings.clay_color),

@@ -14,6 +14,7 @@ from ._komorebi import (
     Settings,
     __version__,
     build_info,
+    content_tags,
     force_instruction_set,
     known_passes,
 )
@@ -28,6 +29,7 @@ __all__ = [
     "Settings",
     "__version__",
     "build_info",
+    "content_tags",
     "force_instruction_set",
     "known_passes",
 ]
