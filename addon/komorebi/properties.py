@@ -116,7 +116,7 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
     )  # fmt: skip
 
 
-def _update_render_passes(self: Any, context: Any) -> None:
+def _update_render_passes(_: Any, context: Any) -> None:
     """Lets the compositor's sockets follow a pass that is switched on or off."""
     context.scene.update_render_passes()
 

@@ -24,7 +24,7 @@ import bpy
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "blender"))
-import support  # noqa: E402
+import support
 
 
 def wavy_grid(kind: str, faces: int, smooth: bool) -> Any:

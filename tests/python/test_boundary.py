@@ -38,6 +38,14 @@ BAD_MESHES = {
     "offsets": ({"face_offsets": OFFSETS[:-1]}, "face_offsets must run from 0"),
     "no offsets": ({"face_offsets": OFFSETS[:0]}, "face_offsets needs at least one entry"),
     "normals": ({"corner_normals": POSITIONS}, "corner_normals must have one row a corner"),
+    "vertex normals": (
+        {"vertex_normals": POSITIONS[1:].copy()},
+        "vertex_normals must have one row a vertex",
+    ),
+    "both normals": (
+        {"vertex_normals": POSITIONS, "corner_normals": np.ones((24, 3), np.float32)},
+        "normals are either by vertex or by corner",
+    ),
     "smooth": ({"smooth_faces": np.ones(5, bool)}, "smooth_faces must have one entry a face"),
     "material": ({"face_materials": np.full(6, -1, np.int32)}, "6 faces have a material slot"),
     "builder": ({"builder": "FAST"}, "FAST"),
@@ -140,3 +148,22 @@ def test_nothing_is_lost_silently_in_a_map() -> None:
     pixels[2, 3] = -1.0
     environment = core.Environment.from_pixels("sky", pixels)
     assert (environment.nonfinite_texels, environment.negative_texels) == (1, 2)
+
+
+def test_content_tags_tell_any_two_arrays_apart() -> None:
+    rng = np.random.default_rng(1)
+    data = rng.integers(0, 256, 3 * 4096 + 5, dtype=np.uint8)
+    tags = core.content_tags(data)
+    assert len(tags) == 4 * 32
+    assert core.content_tags(data.copy(), threads=1) == tags, "the same content, the same tags"
+    for at in (0, 4095, 4096, data.size - 1):
+        other = data.copy()
+        other[at] ^= 1
+        changed = core.content_tags(other)
+        different = [b for b in range(4) if changed[32 * b :][:32] != tags[32 * b :][:32]]
+        assert different == [at // 4096]
+    swapped = data.copy()
+    swapped[0:8], swapped[16:24] = data[16:24], data[0:8]
+    assert core.content_tags(swapped)[:32] != tags[:32], "the order counts"
+    with pytest.raises(ValueError, match="contiguous"):
+        core.content_tags(np.zeros((4, 4))[:, :2])

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -92,6 +93,46 @@ TEST(Triangulate, FlipsTheDiagonalOfAConcaveQuad) {
   dart.corner2vtx = {1, 2, 3, 0};
   EXPECT_EQ(kite.mesh()->tri2corner(), (std::vector<std::int32_t>{0, 1, 2, 0, 2, 3}));
   EXPECT_EQ(dart.mesh()->tri2corner(), (std::vector<std::int32_t>{0, 1, 3, 1, 2, 3}));
+}
+
+TEST(Mesh, NormalsByVertexAreThoseByCorner) {
+  const Polygons by_corner = sphere(12, Vec3d(0), 1.0, true);
+  std::vector<float> vtx2normal(by_corner.vtx2xyz.size());
+  for (std::size_t c = 0; c < by_corner.corner2vtx.size(); ++c) {
+    const auto v = static_cast<std::size_t>(by_corner.corner2vtx[c]);
+    std::copy_n(&by_corner.corner2normal[3 * c], 3, &vtx2normal[3 * v]);
+  }
+  MeshInput in = by_corner.input();
+  in.corner2normal = {};
+  in.vtx2normal = vtx2normal;
+  const auto camera = camera_at({0, 0, 3}, Vec3d(0), 24, 24);
+  Settings settings;
+  settings.samples = 2;
+  const auto picture = [&](const std::shared_ptr<const Mesh>& mesh) {
+    return render(committed(make_scene({{mesh}}, camera)), settings);
+  };
+  const auto expected = picture(by_corner.mesh());
+  EXPECT_EQ(picture(Mesh::build(in, Builder::kLinear, shared_pool(), Cancel())), expected);
+  in.vtx2normal = {};
+  EXPECT_NE(picture(Mesh::build(in, Builder::kLinear, shared_pool(), Cancel())), expected);
+  std::fill(vtx2normal.begin(), vtx2normal.end(), std::numeric_limits<float>::quiet_NaN());
+  const auto flat = picture(Mesh::build(in, Builder::kLinear, shared_pool(), Cancel()));
+  in.vtx2normal = vtx2normal;
+  EXPECT_EQ(picture(Mesh::build(in, Builder::kLinear, shared_pool(), Cancel())), flat);
+}
+
+TEST(Triangulate, MixedFacesKeepTheirOrder) {
+  Polygons p = quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  p.face({0, 1, 2});
+  p.face({0, 1, 2, 3});
+  EXPECT_EQ(p.mesh()->tri2corner(),
+            (std::vector<std::int32_t>{0, 1, 2, 0, 2, 3, 4, 5, 6, 7, 8, 9, 7, 9, 10}));
+  const std::vector<std::int32_t> materials{0, 3, 5};
+  MeshInput in = p.input();
+  in.face2material = materials;
+  const auto mesh = Mesh::build(in, Builder::kLinear, shared_pool(), Cancel());
+  const std::uint16_t* slots = mesh->view().tri2material;
+  EXPECT_EQ(std::vector<int>(slots, slots + 5), (std::vector<int>{0, 0, 3, 5, 5}));
 }
 
 TEST(Mesh, DegenerateTrianglesKeepTheirIndex) {
