@@ -23,43 +23,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from compare.inside import bent, camera, engines, objects, render_settings, world
-
-
-def open_file(path: str) -> list[str]:
-    """Open a .blend without its interface and scripts; complaints about missing parts become
-    notes."""
-    try:
-        bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
-    except RuntimeError as error:
-        if not bpy.data.filepath or not Path(bpy.data.filepath).samefile(path):
-            raise
-        return [f"Blender said while opening: {' '.join(str(error).split())}"]
-    return []
-
-
-def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
-    """Bring the open file into the state that both engines render; returns the scene and what was
-    changed."""
-    scene = bpy.context.scene
-    if job["frame"] is not None:
-        scene.frame_set(job["frame"])
-    notes = render_settings.set_size(scene, job["longest"])
-    render_settings.set_output(scene)
-    layer, more = render_settings.choose_view_layer(scene, job["view_layer"])
-    notes += more + objects.lamps_off() + objects.objects_off() + objects.collections_off(layer)
-    layer.material_override = engines.clay(job["mode"], job["flat"])
-    notes += world.set_world(scene, job["mode"], job["world_image"])
-    scene.frame_set(scene.frame_current)  # the camera bound to a marker, and all drivers
-    depsgraph = layer.depsgraph
-    depsgraph.update()
-    notes += camera.ensure_camera(scene, depsgraph)
-    notes += objects.still_camera(scene.camera) + objects.unsupported_instances(depsgraph)
-    if job["engine"] == "CYCLES":
-        engines.set_cycles(scene, job["samples"])
-    else:
-        engines.set_komorebi(scene, job["samples"], job["mode"])
-    return scene, layer, notes
+from compare.inside import bent, engines
+from compare.inside.prepare import open_file, prepare
 
 
 def render(scene: Any, path: Path) -> np.ndarray:

@@ -1,0 +1,1 @@
+"""What runs inside Blender: making the bench's scenes, and rendering them against the clock."""
