@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bvh/triangle_block.h"
+#include "bvh/triangle_cluster.h"
 #include "core/local_ray.h"
 
 namespace komorebi {

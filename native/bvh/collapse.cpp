@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "bvh/quantise.h"
+
 namespace komorebi {
 namespace {
 
@@ -9,15 +11,18 @@ namespace {
 struct Children {
   std::uint32_t node[kWidth];  ///< topology node, or kLeafBit | position
   std::uint32_t count = 0;
-  std::uint32_t inner = 0;  ///< how many become wide nodes of their own
+  std::uint32_t inner = 0;  ///< how many become wide nodes of their own; they come first
 };
 
 class Collapser {
  public:
-  Collapser(const Topology& topology, std::span<const Aabb> boxes, std::uint32_t leaf_size)
-      : topology_(topology), boxes_(boxes), leaf_size_(leaf_size) {}
+  Collapser(const Topology& topology, std::span<const Aabb> boxes,
+            std::span<const std::uint8_t> is_leaf)
+      : topology_(topology), boxes_(boxes), is_leaf_(is_leaf) {}
 
-  bool is_leaf(std::uint32_t node) const { return range(node).count <= leaf_size_; }
+  bool is_leaf(std::uint32_t node) const {
+    return (node & kLeafBit) != 0 || (!is_leaf_.empty() && is_leaf_[node] != 0);
+  }
 
   LeafRange range(std::uint32_t node) const {
     if (node & kLeafBit) return {node & ~kLeafBit, 1};
@@ -35,18 +40,29 @@ class Collapser {
     return left >= most ? left : left + leaves(topology_.right[node], most - left);
   }
 
+  /// Whether a grid of that step would blow up a box noticeably.
+  static bool is_coarse(const Vec3& step, const Aabb& box) {
+    return half_area(Aabb{box.lo, box.hi + 2.0f * step}) > 1.5f * half_area(box);
+  }
+
   /// The children of the wide node that stands for `node`.
   ///
   /// Subtrees that fit into one wide node are kept whole: opening them early would leave nodes with
   /// two or three children further down, which are most of the memory and of the visits.
+  ///
+  /// A child that is small against the node's grid stays closed, so that its own children get a
+  /// grid of their own: one triangle far away must not coarsen the boxes of all others.
   Children children(std::uint32_t node) const {
     Children result;
-    std::uint32_t size[kWidth];  // leaves below, or kWidth + 1 for more than fit into one node
+    const Vec3 step = (box(node).hi - box(node).lo) / 255.0f;
+    // Leaves below, or kWidth + 1 for more than fit into one node; 0: not to be opened.
+    std::uint32_t size[kWidth];
     float area[kWidth];
     const auto set = [&](std::uint32_t i, std::uint32_t child) {
       result.node[i] = child;
       size[i] = leaves(child, kWidth + 1);
       area[i] = half_area(box(child));
+      if (child != node && is_coarse(step, box(child))) size[i] = 0;
     };
     const auto open = [&](std::uint32_t i) {
       const std::uint32_t opened = result.node[i];
@@ -70,25 +86,25 @@ class Collapser {
       if (best == kWidth) break;
       open(best);
     }
-    for (std::uint32_t i = 0; i < result.count; ++i) {
-      result.inner += is_leaf(result.node[i]) ? 0u : 1u;
-    }
+    const auto end = std::stable_partition(result.node, result.node + result.count,
+                                           [&](std::uint32_t child) { return !is_leaf(child); });
+    result.inner = static_cast<std::uint32_t>(end - result.node);
     return result;
   }
 
  private:
   const Topology& topology_;
   std::span<const Aabb> boxes_;
-  std::uint32_t leaf_size_;
+  std::span<const std::uint8_t> is_leaf_;
 };
 
 }  // namespace
 
-WideTree collapse(const Topology& topology, std::span<const Aabb> boxes, std::uint32_t leaf_size,
-                  ThreadPool& pool, const Cancel& cancel) {
+WideTree collapse(const Topology& topology, std::span<const Aabb> boxes,
+                  std::span<const std::uint8_t> is_leaf, ThreadPool& pool, const Cancel& cancel) {
   WideTree tree;
   if (topology.root == kNone) return tree;
-  const Collapser collapser(topology, boxes, leaf_size);
+  const Collapser collapser(topology, boxes, is_leaf);
   constexpr std::size_t kGrain = 256;
 
   // Level by level: decide all nodes' children, count them, and then every place is known.
@@ -122,27 +138,23 @@ WideTree collapse(const Topology& topology, std::span<const Aabb> boxes, std::ui
 
     pool.for_each_chunk(count, kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
+        const Children& children = decided[i];
         WideNode& wide = tree.nodes[base + i];
-        std::uint32_t to_inner = first_inner[i];
-        std::uint32_t to_leaf = first_leaf[i];
-        for (int k = 0; k < kWidth; ++k) {
-          wide.child[k] = 0;
-          wide.count[k] = 0;
-          if (static_cast<std::uint32_t>(k) >= decided[i].count) {
-            wide.set_box(k, Aabb{});
+        wide.counts = static_cast<std::uint8_t>(children.inner | children.count << 4);
+        wide.first_child = static_cast<std::uint32_t>(base + count) + first_inner[i];
+        wide.first_leaf = first_leaf[i];
+        Aabb box[kWidth];
+        for (std::uint32_t k = 0; k < kWidth; ++k) wide.leaf[k] = 0;
+        for (std::uint32_t k = 0; k < children.count; ++k) {
+          box[k] = collapser.box(children.node[k]);
+          if (k < children.inner) {
+            next[first_inner[i] + k] = children.node[k];
             continue;
           }
-          const std::uint32_t node = decided[i].node[k];
-          wide.set_box(k, collapser.box(node));
-          if (collapser.is_leaf(node)) {
-            tree.leaves[to_leaf] = collapser.range(node);
-            wide.count[k] = tree.leaves[to_leaf].count;
-            wide.child[k] = to_leaf++;
-          } else {
-            wide.child[k] = static_cast<std::uint32_t>(base + count) + to_inner;
-            next[to_inner++] = node;
-          }
+          wide.leaf[k] = static_cast<std::uint8_t>(k - children.inner);
+          tree.leaves[wide.child_leaf(static_cast<int>(k))] = collapser.range(children.node[k]);
         }
+        quantise(box, static_cast<int>(children.count), wide);
       }
     });
     level.swap(next);

@@ -14,8 +14,8 @@ struct LeafRange {
   std::uint32_t count;
 };
 
-/// Wide nodes in breadth-first order (node 0 is the root, siblings are neighbours). A leaf child's
-/// `child` is an index into `leaves`, its `count` the items in it.
+/// Wide nodes in breadth-first order (node 0 is the root, siblings are neighbours). Leaf children
+/// name entries of `leaves` (WideNode::child_leaf).
 struct WideTree {
   std::vector<WideNode> nodes;
   std::vector<LeafRange> leaves;
@@ -23,9 +23,12 @@ struct WideTree {
 };
 
 /// Eight children for two: opens, again and again, the inner child with the largest surface, for
-/// that is the one a random ray visits most (Wald, Benthin, Boulos 2008). Subtrees of up to
-/// `leaf_size` items become leaves. The same for any number of threads.
-WideTree collapse(const Topology& topology, std::span<const Aabb> boxes, std::uint32_t leaf_size,
-                  ThreadPool& pool, const Cancel& cancel);
+/// that is the one a random ray visits most (Wald, Benthin, Boulos 2008). The same for any number
+/// of threads.
+///
+/// @param is_leaf  per inner node of the topology: 1 if its subtree becomes one leaf, as then all
+///                 subtrees of it could. Empty: only single items do.
+WideTree collapse(const Topology& topology, std::span<const Aabb> boxes,
+                  std::span<const std::uint8_t> is_leaf, ThreadPool& pool, const Cancel& cancel);
 
 }  // namespace komorebi

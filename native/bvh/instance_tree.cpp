@@ -67,7 +67,7 @@ InstanceTree build_instance_tree(std::span<const Aabb> world_boxes, Builder buil
     source.push_back(static_cast<std::uint32_t>(i));
   }
   const Topology topology = build_topology(boxes, builder, pool, cancel);
-  WideTree wide = collapse(topology, boxes, 1, pool, cancel);
+  WideTree wide = collapse(topology, boxes, {}, pool, cancel);
 
   InstanceTree tree;
   tree.nodes = std::move(wide.nodes);

@@ -1,7 +1,8 @@
 #include "bvh/mesh_tree.h"
 
-#include <limits>
+#include <stdexcept>
 
+#include "bvh/cluster_builder.h"
 #include "bvh/collapse.h"
 #include "core/triangle.h"
 
@@ -9,18 +10,6 @@ namespace komorebi {
 namespace {
 
 constexpr std::size_t kGrain = 8192;
-
-/// Corners by triangle index.
-struct Triangles {
-  std::span<const float> vtx2xyz;
-  std::span<const std::uint32_t> tri2vtx;
-
-  std::size_t count() const { return tri2vtx.size() / 3; }
-  Vec3 corner(std::size_t triangle, std::size_t which) const {
-    const float* xyz = &vtx2xyz[3 * std::size_t{tri2vtx[3 * triangle + which]}];
-    return Vec3(xyz[0], xyz[1], xyz[2]);
-  }
-};
 
 /// Padded box of every triangle; the empty box for a degenerate one.
 std::vector<Aabb> boxes_of(const Triangles& triangles, ThreadPool& pool, const Cancel& cancel) {
@@ -53,24 +42,73 @@ std::vector<std::uint32_t> drop_empty(std::vector<Aabb>& boxes) {
   return source;
 }
 
-void fill(TriangleBlock& block, const Triangles& triangles, const Topology& topology,
-          const std::vector<std::uint32_t>& source, const LeafRange& leaf) {
-  for (std::size_t k = 0; k < kBlockSize; ++k) {
-    const bool used = k < leaf.count;
-    std::uint32_t triangle = kNone;
-    if (used) {
-      triangle = topology.order[leaf.first + k];
-      if (!source.empty()) triangle = source[triangle];
-    }
-    block.primitive[k] = triangle;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const Vec3 p =
-          used ? triangles.corner(triangle, corner) : Vec3(std::numeric_limits<float>::quiet_NaN());
-      block.corner[corner][0][k] = p.x;
-      block.corner[corner][1][k] = p.y;
-      block.corner[corner][2][k] = p.z;
-    }
+/// Puts a run of positions of `topology.order` into a builder; false if they are too many.
+bool gather(const Topology& topology, const std::vector<std::uint32_t>& source, LeafRange range,
+            ClusterBuilder& cluster) {
+  for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
+    const std::uint32_t item = topology.order[i];
+    if (!cluster.add(source.empty() ? item : source[item])) return false;
   }
+  return true;
+}
+
+/// Which subtrees fit into one cluster.
+std::vector<std::uint8_t> fitting(const Topology& topology,
+                                  const std::vector<std::uint32_t>& source,
+                                  const Triangles& triangles, ThreadPool& pool,
+                                  const Cancel& cancel) {
+  std::vector<std::uint8_t> fits(topology.left.size(), 0);
+  pool.for_each_chunk(fits.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    if (cancel.raised()) return;
+    for (std::size_t i = begin; i < end; ++i) {
+      const LeafRange range{topology.first[i], topology.last[i] - topology.first[i] + 1};
+      ClusterBuilder cluster(triangles);
+      if (range.count <= kClusterTriangles && gather(topology, source, range, cluster)) fits[i] = 1;
+    }
+  });
+  check(cancel);
+  return fits;
+}
+
+/// Writes the leaves of `wide` behind each other and makes its nodes point at them.
+std::vector<std::byte> write_clusters(WideTree& wide, const Topology& topology,
+                                      const std::vector<std::uint32_t>& source,
+                                      const Triangles& triangles, ThreadPool& pool,
+                                      const Cancel& cancel) {
+  const std::size_t count = wide.leaves.size();
+  std::vector<std::uint64_t> place(count + 1, 0);  // in kClusterUnit
+  pool.for_each_chunk(count, kGrain / 4, [&](std::size_t begin, std::size_t end) {
+    if (cancel.raised()) return;
+    for (std::size_t i = begin; i < end; ++i) {
+      ClusterBuilder cluster(triangles);
+      gather(topology, source, wide.leaves[i], cluster);
+      place[i + 1] = cluster.units();
+    }
+  });
+  check(cancel);
+  for (std::size_t i = 0; i < count; ++i) place[i + 1] += place[i];
+  if (place[count] > kMaxClusterUnits) throw std::invalid_argument("a mesh has too many triangles");
+  std::vector<std::byte> clusters(place[count] * kClusterUnit + kClusterSlack);
+  pool.for_each_chunk(count, kGrain / 4, [&](std::size_t begin, std::size_t end) {
+    if (cancel.raised()) return;
+    for (std::size_t i = begin; i < end; ++i) {
+      ClusterBuilder cluster(triangles);
+      gather(topology, source, wide.leaves[i], cluster);
+      cluster.write(clusters.data() + place[i] * kClusterUnit);
+    }
+  });
+  pool.for_each_chunk(wide.nodes.size(), kGrain / 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      WideNode& node = wide.nodes[n];
+      const std::uint64_t first = place[node.first_leaf];
+      for (int k = node.inner_count(); k < node.child_count(); ++k) {
+        node.leaf[k] = static_cast<std::uint8_t>(place[node.child_leaf(k)] - first);
+      }
+      node.first_leaf = static_cast<std::uint32_t>(first);
+    }
+  });
+  check(cancel);
+  return clusters;
 }
 
 }  // namespace
@@ -80,7 +118,7 @@ TreeView MeshTree::view() const {
 }
 
 std::size_t MeshTree::byte_count() const {
-  return nodes.capacity() * sizeof(WideNode) + blocks.capacity() * sizeof(TriangleBlock);
+  return nodes.capacity() * sizeof(WideNode) + clusters.capacity();
 }
 
 MeshTree build_mesh_tree(std::span<const float> vtx2xyz, std::span<const std::uint32_t> tri2vtx,
@@ -90,23 +128,15 @@ MeshTree build_mesh_tree(std::span<const float> vtx2xyz, std::span<const std::ui
   const std::vector<std::uint32_t> source = drop_empty(boxes);
 
   const Topology topology = build_topology(boxes, builder, pool, cancel);
-  WideTree wide = collapse(topology, boxes, kBlockSize, pool, cancel);
+  WideTree wide =
+      collapse(topology, boxes, fitting(topology, source, triangles, pool, cancel), pool, cancel);
 
   MeshTree tree;
   tree.degenerate_count = static_cast<std::uint32_t>(triangles.count() - boxes.size());
   tree.depth = wide.depth;
+  tree.clusters = write_clusters(wide, topology, source, triangles, pool, cancel);
   tree.nodes = std::move(wide.nodes);
-  tree.blocks.resize(wide.leaves.size());
-  pool.for_each_chunk(wide.leaves.size(), kGrain / 4, [&](std::size_t begin, std::size_t end) {
-    if (cancel.raised()) return;
-    for (std::size_t i = begin; i < end; ++i) {
-      fill(tree.blocks[i], triangles, topology, source, wide.leaves[i]);
-    }
-  });
-  check(cancel);
-  if (!tree.nodes.empty()) {
-    for (int i = 0; i < kWidth; ++i) tree.bounds = united(tree.bounds, tree.nodes[0].box(i));
-  }
+  for (const Aabb& box : boxes) tree.bounds = united(tree.bounds, box);
   return tree;
 }
 

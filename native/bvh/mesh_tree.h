@@ -4,17 +4,19 @@
 #include <vector>
 
 #include "bvh/topology.h"
-#include "bvh/triangle_block.h"
+#include "bvh/triangle_cluster.h"
 #include "bvh/wide_node.h"
 #include "core/scene_view.h"
 
 namespace komorebi {
 
-/// A mesh's triangles as traversal reads them: wide nodes whose leaves are blocks of up to four
-/// triangles. Immutable after the build.
+/// A mesh's triangles as traversal reads them: wide nodes whose leaves are clusters of up to eight
+/// triangles. Nothing else of the mesh is read to find a hit. Immutable after the build.
 struct MeshTree {
   std::vector<WideNode> nodes;
-  std::vector<TriangleBlock> blocks;
+  /// Cluster records (bvh/triangle_cluster.h), one behind the other, and kClusterSlack bytes. A
+  /// leaf is counted in kClusterUnit from the start.
+  std::vector<std::byte> clusters;
   std::uint32_t depth = 0;
   /// Triangles without area: they are in no leaf and never hit, but keep their index.
   std::uint32_t degenerate_count = 0;

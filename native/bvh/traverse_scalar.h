@@ -10,36 +10,38 @@ namespace komorebi {
 inline constexpr std::uint32_t kStackSize = kMaxDepth * (kWidth - 1) + 1;
 
 /// Visits the leaves of a wide tree that the ray meets within `range` and before `limit` (which
-/// shrinks as the visitor finds hits), near children first. `visit(child, count)` returns true to
-/// stop; so does walk then.
+/// shrinks as the visitor finds hits), near children first. `visit(leaf)` returns true to stop; so
+/// does walk then.
 template <class Visit>
 bool walk(const TreeView& tree, const SlabRay& slab, Interval range, const float& limit,
           const Visit& visit) {
   struct Entry {
     float begin;
-    std::uint32_t child, count;
+    bool is_leaf;
+    std::uint32_t child;
   };
   if (tree.node_count == 0) return false;
   Entry stack[kStackSize];
   std::uint32_t size = 0;
-  stack[size++] = {range.begin, 0, 0};
+  stack[size++] = {range.begin, false, 0};
   while (size > 0) {
     const Entry entry = stack[--size];
     if (entry.begin > limit) continue;
-    if (entry.count > 0) {
-      if (visit(entry.child, entry.count)) return true;
+    if (entry.is_leaf) {
+      if (visit(entry.child)) return true;
       continue;
     }
     const WideNode& node = tree.nodes[entry.child];
     const std::uint32_t bottom = size;
-    for (int i = 0; i < kWidth; ++i) {
+    for (int i = 0; i < node.child_count(); ++i) {
       const Interval inside = slab_interval(slab, node.box(i), range);
       if (inside.is_empty() || inside.begin > limit) continue;
       std::uint32_t place = size++;  // sorted: the nearest on top
       for (; place > bottom && stack[place - 1].begin < inside.begin; --place) {
         stack[place] = stack[place - 1];
       }
-      stack[place] = {inside.begin, node.child[i], node.count[i]};
+      const bool is_leaf = i >= node.inner_count();
+      stack[place] = {inside.begin, is_leaf, is_leaf ? node.child_leaf(i) : node.child_node(i)};
     }
   }
   return false;
@@ -51,28 +53,25 @@ Hit trace_scalar(const SceneView& scene, const Ray& ray, const Filter& filter) {
   Closest closest(ray);
   const SlabRay world = make_world_slab(ray);
   if (!is_usable(world)) return closest.hit;
-  const auto visit_instances = [&](std::uint32_t first, std::uint32_t count) {
-    for (std::uint32_t i = first; i < first + count; ++i) {
-      const std::uint32_t index = scene.leaf2instance[i];
-      const InstanceView& instance = scene.instances[index];
-      LocalRay local;
-      if (!enter_instance(instance, ray, world, &local)) continue;
-      const MeshView& mesh = scene.meshes[instance.mesh];
-      const auto visit_block = [&](std::uint32_t leaf, std::uint32_t triangles) {
-        const TriangleBlock& block = mesh.blocks[leaf];
-        for (int k = 0; k < static_cast<int>(triangles); ++k) {
-          const bool found =
-              test_triangle(local, ray, index, block.primitive[k], block.position(0, k),
-                            block.position(1, k), block.position(2, k), filter, &closest);
-          if (kAny && found) return true;
-        }
-        return false;
-      };
-      if (walk(mesh.tree, local.slab, local.range, closest.limit, visit_block)) return true;
-    }
-    return false;
+  const auto visit_instance = [&](std::uint32_t entry) {
+    const std::uint32_t index = scene.leaf2instance[entry];
+    const InstanceView& instance = scene.instances[index];
+    LocalRay local;
+    if (!enter_instance(instance, ray, world, &local)) return false;
+    const MeshView& mesh = scene.meshes[instance.mesh];
+    const auto visit_cluster = [&](std::uint32_t leaf) {
+      const ClusterView cluster(mesh.clusters + std::size_t{leaf} * kClusterUnit);
+      for (std::uint32_t k = 0; k < cluster.triangle_count(); ++k) {
+        const bool found =
+            test_triangle(local, ray, index, cluster.primitive(k), cluster.position(k, 0),
+                          cluster.position(k, 1), cluster.position(k, 2), filter, &closest);
+        if (kAny && found) return true;
+      }
+      return false;
+    };
+    return walk(mesh.tree, local.slab, local.range, closest.limit, visit_cluster);
   };
-  walk(scene.tree, world, Interval{ray.t_min, ray.t_max}, closest.limit, visit_instances);
+  walk(scene.tree, world, Interval{ray.t_min, ray.t_max}, closest.limit, visit_instance);
   return closest.hit;
 }
 

@@ -17,11 +17,11 @@ namespace komorebi {
 std::string validate(const Topology& topology, std::span<const Aabb> boxes);
 
 /// Every triangle that is not degenerate in exactly one leaf, with its own corners; the others in
-/// none, and counted; boxes contain children and triangles; depth and node order right.
+/// none, and counted; all boxes above a triangle contain it; depth and node order right.
 std::string validate(const MeshTree& tree, std::span<const float> vtx2xyz,
                      std::span<const std::uint32_t> tri2vtx);
 
-/// Every instance whose box is not empty in exactly one leaf; boxes contain children.
+/// Every instance whose box is not empty in exactly one leaf, and inside all boxes above.
 std::string validate(const InstanceTree& tree, std::span<const Aabb> world_boxes);
 
 }  // namespace komorebi

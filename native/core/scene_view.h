@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "core/aabb.h"
 #include "core/ray.h"
 
@@ -13,8 +15,7 @@ enum InstanceFlag : std::uint32_t {
   kInstanceShadowCatcher = 1u << 1,
 };
 
-struct WideNode;       // bvh/wide_node.h
-struct TriangleBlock;  // bvh/triangle_block.h
+struct WideNode;  // bvh/wide_node.h
 
 /// A named array on a mesh (UV map, colour): the table is there before the first reader.
 enum class AttributeDomain : std::uint32_t { kVertex, kCorner, kFace };
@@ -49,7 +50,7 @@ struct MeshView {
   const AttributeView* attributes = nullptr;
   std::uint32_t attribute_count = 0;
   TreeView tree;
-  const TriangleBlock* blocks = nullptr;  ///< leaves of the tree point here
+  const std::byte* clusters = nullptr;  ///< leaves of the tree: bvh/triangle_cluster.h
 };
 
 /// One instance of a mesh.  world = world_from_local · local + position

@@ -194,7 +194,7 @@ MeshView Mesh::view() const {
   view.tri2smooth = tri2smooth_.empty() ? nullptr : tri2smooth_.data();
   view.tri2material = tri2material_.empty() ? nullptr : tri2material_.data();
   view.tree = tree_.view();
-  view.blocks = tree_.blocks.data();
+  view.clusters = tree_.clusters.data();
   return view;
 }
 

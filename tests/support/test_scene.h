@@ -52,7 +52,7 @@ class TestScene {
       view.vtx2xyz = entry->mesh.vtx2xyz.data();
       view.tri2vtx = entry->mesh.tri2vtx.data();
       view.tree = entry->tree.view();
-      view.blocks = entry->tree.blocks.data();
+      view.clusters = entry->tree.clusters.data();
       meshes_.push_back(view);
     }
   }
