@@ -38,6 +38,6 @@ def register_passes(engine: Any, scene: Any, view_layer: Any) -> None:
         engine.register_pass(scene, view_layer, p.name, p.channels, p.channel_ids, p.kind)
 
 
-def sources(passes: Sequence[Pass]) -> tuple[str, ...]:
-    """What the core has to keep for them."""
-    return tuple(dict.fromkeys(p.source for p in passes))
+def sources(passes: Sequence[Pass], *more: str) -> tuple[str, ...]:
+    """What the core has to keep for them, and `more` that is not told to Blender."""
+    return tuple(dict.fromkeys((*(p.source for p in passes), *more)))

@@ -7,12 +7,12 @@ Blender's Python, the system's.
 
 from __future__ import annotations
 
-import functools
 import glob
 import importlib.util
 import os
 import sys
 from dataclasses import dataclass
+from typing import Any
 
 import bpy
 
@@ -40,16 +40,15 @@ def find() -> Library:
 
 def _preferred() -> str:
     package = __package__.rpartition(".")[0]
-    addon = bpy.context.preferences.addons.get(package)
+    addon: Any = bpy.context.preferences.addons.get(package)
     path = getattr(getattr(addon, "preferences", None), "oidn_path", "")
     return str(bpy.path.abspath(path)) if path else ""
 
 
-@functools.lru_cache(maxsize=8)
 def _find(named: str) -> Library:
     if named:
         path = named if os.path.isfile(named) else _in(named)
-        return Library(path) if path else Library(missing=f"There is no OpenImageDenoise at {named}")
+        return Library(path, "" if path else f"There is no OpenImageDenoise at {named}")
     for folder in (*_blenders_folders(), *_package_folders(), *_SYSTEM_FOLDERS):
         path = _in(folder)
         if path:
@@ -70,8 +69,7 @@ def _in(folder: str) -> str:
 def _blenders_folders() -> list[str]:
     """Where official builds have their own copy; also Blender as a Python module."""
     homes = [os.path.dirname(bpy.app.binary_path or "")]
-    if bpy.__file__:
-        homes.append(os.path.dirname(bpy.__file__))
+    homes.append(os.path.dirname(bpy.utils.resource_path("LOCAL")))
     names = ("lib", "blender.shared", "../Resources/lib")
     return [os.path.join(home, name) for home in homes if home for name in names]
 

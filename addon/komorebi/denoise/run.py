@@ -12,6 +12,7 @@ import numpy as np
 from ..errors import RenderError
 from ..scene_data import FloatArray
 
+GUIDE = "Normal"  # the core's pass from which guides are made
 WORKER = os.path.join(os.path.dirname(__file__), "worker.py")
 
 
@@ -34,10 +35,13 @@ class Kill:
 
 
 def guides(session: Any, width: int, height: int, albedo: Any) -> tuple[FloatArray, FloatArray]:
-    """Albedo and normal [height, width, 3] of what the camera sees first, the sky's being zero."""
-    coverage = session.read("Coverage", 0, 0, width, height)
-    normal = session.read("Normal", 0, 0, width, height)
-    return (coverage * np.asarray(albedo, np.float32)).astype(np.float32), normal
+    """Albedo and normal [height, width, 3] of what the camera sees first; zero where that is sky.
+
+    Every surface has the same `albedo`, so that this guide only parts surfaces from the sky.
+    """
+    normal = session.read(GUIDE, 0, 0, width, height)
+    surface = normal.any(axis=2, keepdims=True)
+    return surface * np.asarray(albedo, np.float32), normal
 
 
 def denoised(

@@ -89,8 +89,8 @@ def main(arguments: list[str]) -> int:
     width, height, threads = map(int, arguments[1:])
     planes = []
     for _ in range(3):
-        plane = bytearray(width * height * 12)
-        if sys.stdin.buffer.readinto(plane) != len(plane):
+        plane = bytearray(sys.stdin.buffer.read(width * height * 12))
+        if len(plane) != width * height * 12:
             print("the picture did not arrive", file=sys.stderr)
             return 1
         planes.append(plane)
