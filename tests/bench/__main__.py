@@ -9,7 +9,8 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from bench import core, machine, meshes, options, ray_tables
+from bench import core, machine, meshes, options, pictures, ray_tables
+from bench.progress import say
 from bench.tables import Table
 
 SCHEMA = 1
@@ -20,6 +21,7 @@ PARTS: dict[str, Part] = {
     "build": ("2 to 5 minutes", core.measure_build, core.build_tables),
     "rays": ("5 minutes", core.measure_rays, ray_tables.ray_tables),
     "memory": ("as build", core.measure_build, core.memory_tables),
+    "pictures": ("20 minutes, longer where references are new", pictures.measure, pictures.tables),
 }
 
 
@@ -36,7 +38,7 @@ def main(words: list[str]) -> int:
     measured: Rows = []
     for part in parts:
         budget, measure, tabulate = PARTS[part]
-        core.say(f"{part}: {'seconds' if chosen.quick else 'hours' if chosen.full else budget}")
+        say(f"{part}: {'seconds' if chosen.quick else 'hours' if chosen.full else budget}")
         start = time.perf_counter()
         # Memory is measured with the builds.
         rows = measured if part == "memory" and measured else measure(chosen)
