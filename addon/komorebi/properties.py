@@ -22,21 +22,16 @@ AO_SAMPLINGS = (
     ("UNIFORM", "Uniform", "Rays evenly over the hemisphere: same result, more noise"),
 )
 ENVIRONMENT_SAMPLINGS = (
-    ("MIS", "Multiple Importance", "Both of the others, each where it is good at it"),
+    ("MIS", "Multiple Importance", "The next two together, each where it is good at it"),
     ("COSINE", "Cosine", "Rays by the surface's cosine: good for even skies"),
     ("ENVIRONMENT", "Environment", "Rays by the map's brightness: good for small bright suns"),
+    ("PRODUCT", "Product", "In proportion to the light's brightness times the surface's cosine"),
 )
 PIXEL_FILTERS = (
     ("BLACKMAN_HARRIS", "Blackman-Harris", "Smooth and sharp"),
     ("GAUSSIAN", "Gaussian", "Smoother"),
     ("BOX", "Box", "Each pixel by itself"),
 )
-
-
-def _update_render_passes(_: Any, context: Any) -> None:
-    """Lets the compositor's sockets follow a pass that is switched on or off."""
-    if context.view_layer is not None:
-        context.view_layer.update_render_passes()
 
 
 class KomorebiSceneSettings(bpy.types.PropertyGroup):
@@ -91,12 +86,6 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         name="Use Animated Seed", description="Another seed, and so another noise, in each frame",
         default=False,
     )  # fmt: skip
-    use_denoising: BoolProperty(
-        name="Use Denoising",
-        description="Denoise the picture with Open Image Denoise, guided by albedo and normal; "
-        "the pass Noisy Image keeps it as it was",
-        default=False, update=_update_render_passes,
-    )  # fmt: skip
     ao_distance: FloatProperty(
         name="Distance", description="How far away things still darken a point; 0 is any distance",
         default=0.0, min=0.0, soft_max=100.0, subtype="DISTANCE",
@@ -111,7 +100,7 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
     )  # fmt: skip
     environment_sampling: EnumProperty(
         name="Environment Sampling", description="How rays towards the world are chosen",
-        items=ENVIRONMENT_SAMPLINGS, default="MIS",
+        items=ENVIRONMENT_SAMPLINGS, default="PRODUCT",
     )  # fmt: skip
     pixel_filter: EnumProperty(
         name="Filter", description="How samples around a pixel's centre are weighted",
@@ -126,6 +115,11 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         description="Refine the whole frame step by step; off: finish one tile after the other",
         default=True,
     )  # fmt: skip
+
+
+def _update_render_passes(_: Any, context: Any) -> None:
+    """Lets the compositor's sockets follow a pass that is switched on or off."""
+    context.scene.update_render_passes()
 
 
 class KomorebiViewLayerSettings(bpy.types.PropertyGroup):

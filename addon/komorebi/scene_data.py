@@ -16,7 +16,6 @@ DoubleArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
 UIntArray = NDArray[np.uint32]
 BoolArray = NDArray[np.bool_]
-Arrays = tuple[NDArray[Any] | None, ...]
 
 
 @dataclass(slots=True)
@@ -34,15 +33,12 @@ class MeshData:
     smooth_faces: BoolArray | None = None  # [faces]; None: all smooth if there are normals
     face_materials: IntArray | None = None  # [faces]; None: all slot 0
 
-    def geometry(self) -> Arrays:
-        """What decides where rays hit: with the same, two meshes share a tree."""
+    def arrays(self) -> tuple[NDArray[Any] | None, ...]:
+        """All that two meshes need to share to be the same one, whatever their names."""
         return (
             self.positions, self.corner_verts, self.face_offsets, self.tri2corner, self.tri2face,
+            self.corner_normals, self.vertex_normals, self.smooth_faces, self.face_materials,
         )  # fmt: skip
-
-    def shading(self) -> Arrays:
-        """Everything else but the name."""
-        return self.corner_normals, self.vertex_normals, self.smooth_faces, self.face_materials
 
 
 @dataclass(slots=True)

@@ -132,20 +132,24 @@ inline CdfPosition find_in_cdf(const std::uint32_t* cdf, std::uint32_t count, st
   return {first, fraction < kOneMinusEpsilon ? fraction : kOneMinusEpsilon};
 }
 
-// The density at (s, t) of a patch, t linear in z, from the very integers that choose the patch.
-inline float patch_pdf(const EnvironmentView& e, const EnvironmentPatch& p, const PatchWeights& w,
-                       float s, float t) {
+// The density at (s, t), t linear in z, of a patch that is chosen with this probability.
+inline float density_in_patch(const EnvironmentView& e, const EnvironmentPatch& p,
+                              const PatchWeights& w, float s, float t, double probability) {
   const float mean =
       0.25f * w.low_left + 0.25f * w.low_right + 0.25f * w.high_left + 0.25f * w.high_right;
   if (!(mean > 0.0f)) return 0.0f;
   const float shape =
       mix(mix(w.low_left, w.low_right, s), mix(w.high_left, w.high_right, s), t) / mean;
-  const std::uint32_t* columns = patch_columns(e, p.row);
-  const double row_units = e.row_cdf[p.row + 1] - e.row_cdf[p.row];
-  const double column_units = columns[p.column + 1] - columns[p.column];
-  const double probability = row_units * column_units * 2.1684043449710089e-19;  // 2^-62
   const double solid_angle = 2.0 * kPi / e.width * (e.row_z[p.row + 1] - e.row_z[p.row]);
   return static_cast<float>(probability / solid_angle * static_cast<double>(shape));
+}
+
+// With which probability sample_environment chooses a patch, from the very integers that choose it.
+inline double patch_probability(const EnvironmentView& e, std::uint32_t row, std::uint32_t column) {
+  const std::uint32_t* columns = patch_columns(e, row);
+  const double row_units = e.row_cdf[row + 1] - e.row_cdf[row];
+  const double column_units = columns[column + 1] - columns[column];
+  return row_units * column_units * 2.1684043449710089e-19;  // 2^-62
 }
 
 struct PatchPosition {
@@ -191,7 +195,8 @@ inline EnvironmentValue evaluate_environment(const EnvironmentView& e, const Vec
   const auto at = detail::locate(e, e.texture_from_world * direction);
   const auto weights = detail::patch_weights(e, at.patch);
   return {e.strength * detail::patch_radiance(at.patch, at.s, at.t),
-          detail::patch_pdf(e, at.patch, weights, at.s, at.z_fraction)};
+          detail::density_in_patch(e, at.patch, weights, at.s, at.z_fraction,
+                                   detail::patch_probability(e, at.patch.row, at.patch.column))};
 }
 
 inline Vec3 environment_radiance(const EnvironmentView& e, const Vec3& direction) {
@@ -203,6 +208,37 @@ inline Vec3 environment_radiance(const EnvironmentView& e, const Vec3& direction
 inline float environment_pdf(const EnvironmentView& e, const Vec3& direction) {
   return evaluate_environment(e, direction).pdf;
 }
+
+namespace detail {
+
+// A sample from a patch that was chosen with this probability: bilinear in (u, z), by the inverse
+// transform.
+inline EnvironmentSample sample_patch(const EnvironmentView& e, std::uint32_t row,
+                                      std::uint32_t column, float column_fraction,
+                                      float row_fraction, double probability) {
+  const EnvironmentPatch patch = environment_patch(e, row, column);
+  const PatchWeights w = patch_weights(e, patch);
+  const float up = sample_linear(row_fraction, 0.5f * w.low_left + 0.5f * w.low_right,
+                                 0.5f * w.high_left + 0.5f * w.high_right);
+  const float across = sample_linear(column_fraction, mix(w.low_left, w.high_left, up),
+                                     mix(w.low_right, w.high_right, up));
+
+  const double z = e.row_z[row] + static_cast<double>(up) * (e.row_z[row + 1] - e.row_z[row]);
+  const auto r = static_cast<float>(std::sqrt((1.0 - z) * (1.0 + z)));
+  const float turns =
+      0.5f - (static_cast<float>(column) + 0.5f + across) / static_cast<float>(e.width);
+  const auto [sin_phi, cos_phi] = sin_cos_turns(turns);
+  const Vec3 direction(r * cos_phi, r * sin_phi, static_cast<float>(z));
+
+  const float v = 0.5f + atan2_radians(direction.z, r) * kInvPi;
+  const float t = v * static_cast<float>(e.height) - 0.5f - (static_cast<float>(row) - 1.0f);
+  const float inside = t > 0.0f ? (t < 1.0f ? t : 1.0f) : 0.0f;
+  return {glm::transpose(e.texture_from_world) * direction,
+          e.strength * patch_radiance(patch, across, inside),
+          density_in_patch(e, patch, w, across, up, probability)};
+}
+
+}  // namespace detail
 
 /// A direction with density proportional to the map's luminance: the inverse transform of rows,
 /// then of columns within the row, then bilinearly within the patch; monotone in both coordinates
@@ -216,27 +252,8 @@ inline EnvironmentSample sample_environment(const EnvironmentView& e, const Bits
   const auto [row, row_fraction] = detail::find_in_cdf(e.row_cdf, e.height + 1, bits.y);
   const auto [column, column_fraction] =
       detail::find_in_cdf(detail::patch_columns(e, row), e.width, bits.x);
-
-  const auto patch = detail::environment_patch(e, row, column);
-  const auto w = detail::patch_weights(e, patch);
-  const float up = sample_linear(row_fraction, 0.5f * w.low_left + 0.5f * w.low_right,
-                                 0.5f * w.high_left + 0.5f * w.high_right);
-  const float across = sample_linear(column_fraction, detail::mix(w.low_left, w.high_left, up),
-                                     detail::mix(w.low_right, w.high_right, up));
-
-  const double z = e.row_z[row] + static_cast<double>(up) * (e.row_z[row + 1] - e.row_z[row]);
-  const auto r = static_cast<float>(std::sqrt((1.0 - z) * (1.0 + z)));
-  const float turns =
-      0.5f - (static_cast<float>(column) + 0.5f + across) / static_cast<float>(e.width);
-  const auto [sin_phi, cos_phi] = sin_cos_turns(turns);
-  const Vec3 direction(r * cos_phi, r * sin_phi, static_cast<float>(z));
-
-  const float v = 0.5f + atan2_radians(direction.z, r) * kInvPi;
-  const float t = v * static_cast<float>(e.height) - 0.5f - (static_cast<float>(row) - 1.0f);
-  const float inside = t > 0.0f ? (t < 1.0f ? t : 1.0f) : 0.0f;
-  return {glm::transpose(e.texture_from_world) * direction,
-          e.strength * detail::patch_radiance(patch, across, inside),
-          detail::patch_pdf(e, patch, w, across, up)};
+  return detail::sample_patch(e, row, column, column_fraction, row_fraction,
+                              detail::patch_probability(e, row, column));
 }
 
 }  // namespace komorebi

@@ -14,6 +14,7 @@ float cosine_share(EnvironmentSampling sampling, bool uniform_world) {
     case EnvironmentSampling::kEnvironment:
       return 0.0f;
     case EnvironmentSampling::kMis:
+    case EnvironmentSampling::kProduct:
       return uniform_world ? 1.0f : 0.5f;
   }
   return 1.0f;
@@ -38,6 +39,11 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.albedo = ao ? Vec3(1.0f) : settings.clay_color;
   context.light_distance = ao && settings.ao_distance > 0.0f ? settings.ao_distance : Ray{}.t_max;
   context.cosine_share = cosine_share(settings.environment_sampling, scene.world_is_uniform());
+  const auto& map = scene.world_environment();
+  if (!ao && map && !map->black() &&
+      settings.environment_sampling == EnvironmentSampling::kProduct) {
+    context.product = map->product_table().view();
+  }
   context.transparent = settings.film_transparent;
   context.seed = settings.seed;
   context.light_samples =

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/camera.h"
-#include "core/environment.h"
+#include "core/environment_product.h"
 #include "core/filter.h"
 #include "core/scene_view.h"
 #include "render/scene.h"
@@ -14,6 +14,7 @@ struct RenderContext {
   SceneView scene;
   CameraView camera;
   EnvironmentView environment;
+  ProductView product;  ///< bins = 0: light rays are drawn by cosine_share
   FilterView filter;
   Method method = Method::kAmbientOcclusion;
   AoSampling ao_sampling = AoSampling::kCosine;

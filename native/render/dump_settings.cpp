@@ -43,7 +43,7 @@ constexpr std::uint32_t last_value(AoSampling) {
   return 1;
 }
 constexpr std::uint32_t last_value(EnvironmentSampling) {
-  return 2;
+  return 3;
 }
 constexpr std::uint32_t last_value(PixelFilter) {
   return 2;

@@ -4,34 +4,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "render/quantized_cdf.h"
+
 namespace komorebi {
-namespace {
-
-// cdf[i] = the sum of the weights before i over their total, in units of 2^-31, for i = 0…size; all
-// 0 when the total is. Each positive weight has one unit for certain and its share of the rest.
-// Returns the total.
-double quantize_cdf(const std::vector<double>& weight, std::uint32_t* cdf) {
-  double total = 0.0;
-  std::uint32_t positive = 0;
-  for (const double w : weight) {
-    total += w;
-    positive += w > 0.0;
-  }
-  const std::uint32_t shared_units = (1u << 31) - positive;
-  double sum = 0.0;
-  std::uint32_t certain = 0;
-  for (std::size_t i = 0; i <= weight.size(); ++i) {
-    const double share = total > 0.0 ? sum / total : 0.0;
-    cdf[i] = certain + static_cast<std::uint32_t>(share * shared_units);
-    if (i == weight.size()) break;
-    sum += weight[i];
-    certain += weight[i] > 0.0;
-  }
-  return total;
-}
-
-}  // namespace
-
 Environment::Environment(std::string name, std::uint32_t width, std::uint32_t height,
                          std::vector<float> texels)
     : name_(std::move(name)), width_(width), height_(height), texels_(std::move(texels)) {
@@ -119,6 +94,12 @@ EnvironmentView Environment::view(double strength, const Mat3d& texture_from_wor
   view.column_cdf = column_cdf_.data();
   view.row_z = row_z_.data();
   return view;
+}
+
+const ProductTable& Environment::product_table() const {
+  std::call_once(product_once_,
+                 [this] { product_table_ = std::make_unique<const ProductTable>(view()); });
+  return *product_table_;
 }
 
 std::size_t Environment::byte_count() const {

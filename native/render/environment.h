@@ -1,9 +1,12 @@
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include "core/environment.h"
+#include "render/product_table.h"
 
 namespace komorebi {
 
@@ -20,6 +23,10 @@ class Environment {
   /// Valid while the environment lives. `texture_from_world` must be a rotation (or a reflection):
   /// std::invalid_argument otherwise, or when `strength` is negative or not finite.
   EnvironmentView view(double strength = 1.0, const Mat3d& texture_from_world = Mat3d(1.0)) const;
+
+  /// The tables of product importance sampling, made at the first call. Not for a black map. Safe
+  /// from any thread.
+  const ProductTable& product_table() const;
 
   const std::string& name() const { return name_; }
   std::uint32_t width() const { return width_; }
@@ -40,6 +47,8 @@ class Environment {
   std::vector<float> texels_;
   std::vector<std::uint32_t> row_cdf_, column_cdf_;
   std::vector<double> row_z_;
+  mutable std::once_flag product_once_;
+  mutable std::unique_ptr<const ProductTable> product_table_;
   float max_radiance_ = 0.0f;
   std::uint64_t nonfinite_texels_ = 0, negative_texels_ = 0;
 };

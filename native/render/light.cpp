@@ -58,11 +58,24 @@ LightSample sample_sky(const RenderContext& context, const SurfacePoint& point, 
   return sample;
 }
 
+LightSample sample_sky_product(const RenderContext& context, const SurfacePoint& point,
+                               const Bits2& bits) {
+  const EnvironmentSample drawn =
+      sample_product(context.environment, context.product, point.normal, bits);
+  LightSample sample;
+  sample.direction = drawn.direction;
+  const float cosine = glm::dot(drawn.direction, point.normal);
+  sample.contribution =
+      lambertian(context, point, drawn.direction, cosine, drawn.pdf, drawn.radiance);
+  return sample;
+}
+
 }  // namespace
 
 LightSample sample_light(const RenderContext& context, const SurfacePoint& point,
                          const Sampler& sampler, std::uint32_t index) {
   const Bits2 bits = sampler.bits_2d(vertex_dimension(0, kVertexLightDirection), index);
+  if (context.product.bins > 0) return sample_sky_product(context, point, bits);
   if (context.method == Method::kWorldLight) return sample_sky(context, point, bits);
   return sample_ambient(context, point, Vec2(to_unit_float(bits.x), to_unit_float(bits.y)));
 }

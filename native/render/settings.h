@@ -11,7 +11,7 @@ namespace komorebi {
 
 enum class Method : std::uint32_t { kAmbientOcclusion, kWorldLight };
 enum class AoSampling : std::uint32_t { kCosine, kUniform };
-enum class EnvironmentSampling : std::uint32_t { kMis, kCosine, kEnvironment };
+enum class EnvironmentSampling : std::uint32_t { kMis, kCosine, kEnvironment, kProduct };
 
 /// A rectangle of full-frame pixels, half open; row 0 at the bottom.
 struct Rect {
@@ -20,9 +20,6 @@ struct Rect {
   std::uint32_t height() const { return y_max - y_min; }
   std::size_t area() const { return static_cast<std::size_t>(width()) * height(); }
 };
-
-/// Films of up to as many samples have finer units than larger ones.
-inline constexpr std::uint32_t kManySamples = 1u << 16;
 
 /// Everything about a render that is not in the scene. Names are those of `scene.komorebi`.
 struct Settings {
@@ -38,7 +35,7 @@ struct Settings {
   float ao_distance = 0.0f;                ///< metres; 0: unlimited
   AoSampling ao_sampling = AoSampling::kCosine;
   Vec3 clay_color{0.8f};  ///< albedo under World Light, linear Rec.709
-  EnvironmentSampling environment_sampling = EnvironmentSampling::kMis;
+  EnvironmentSampling environment_sampling = EnvironmentSampling::kProduct;
   PixelFilter pixel_filter = PixelFilter::kBlackmanHarris;
   float filter_width = 1.5f;    ///< pixels
   bool use_progressive = true;  ///< refine the whole frame, not one tile to its end

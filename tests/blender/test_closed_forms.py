@@ -89,7 +89,7 @@ def test_plane_beside_a_sphere_with_uniform_sampling(folder):
 
 def test_plane_beside_a_sphere_as_world_light(folder):
     """Clay of albedo 1 under a white world is ambient occlusion, whatever the strategy."""
-    for strategy in ("MIS", "COSINE", "ENVIRONMENT"):
+    for strategy in ("PRODUCT", "MIS", "COSINE", "ENVIRONMENT"):
         beside_a_sphere(
             pictures(
                 folder,
@@ -138,7 +138,7 @@ def test_furnace_hides_a_white_body(folder):
     white = {"method": "WORLD_LIGHT", "clay_color": (1.0, 1.0, 1.0)}
     made = pictures(folder, "furnace", samples=16, environment_sampling="COSINE", **white)
     assert np.abs(made - 2.5).max() < 1e-5
-    for strategy in ("MIS", "ENVIRONMENT"):
+    for strategy in ("PRODUCT", "MIS", "ENVIRONMENT"):
         made = pictures(folder, "furnace", environment_sampling=strategy, **white)
         agree(made, 2.5, np.ones(made.shape[1:], bool), 1e-4)
 

@@ -8,13 +8,13 @@ DEFAULTS = {
     "method": "AMBIENT_OCCLUSION", "samples": 128, "light_samples": 0, "sample_offset": 0,
     "use_adaptive_sampling": False, "adaptive_min_samples": 0, "time_limit": 0.0,
     "seed": 0, "use_animated_seed": False, "ao_distance": 0.0, "ao_sampling": "COSINE",
-    "environment_sampling": "MIS", "pixel_filter": "BLACKMAN_HARRIS", "filter_width": 1.5,
+    "environment_sampling": "PRODUCT", "pixel_filter": "BLACKMAN_HARRIS", "filter_width": 1.5,
     "use_progressive": True,
 }  # fmt: skip
 ITEMS = {
     "method": ["AMBIENT_OCCLUSION", "WORLD_LIGHT"],
     "ao_sampling": ["COSINE", "UNIFORM"],
-    "environment_sampling": ["MIS", "COSINE", "ENVIRONMENT"],
+    "environment_sampling": ["MIS", "COSINE", "ENVIRONMENT", "PRODUCT"],
     "pixel_filter": ["BLACKMAN_HARRIS", "GAUSSIAN", "BOX"],
 }
 

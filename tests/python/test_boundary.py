@@ -123,7 +123,7 @@ def test_a_setting_out_of_range_is_refused(sentence: str) -> None:
 
 
 def test_an_unknown_choice_lists_the_known_ones() -> None:
-    with pytest.raises(ValueError, match="MIS, COSINE, ENVIRONMENT, not LUCK"):
+    with pytest.raises(ValueError, match="MIS, COSINE, ENVIRONMENT, PRODUCT, not LUCK"):
         core.Settings(environment_sampling="LUCK")
 
 

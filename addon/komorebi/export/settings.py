@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..denoise.run import GUIDE
-from ..passes import Pass, sources
+from ..passes import Pass, names
 
 # An odd multiplier far from any pattern (2³² / golden ratio): neighbouring frames get seeds that
 # have nothing in common.
@@ -43,5 +42,5 @@ def export_settings(
         # With -t on the command line Blender answers FIXED and that number.
         "threads": render.threads if render.threads_mode == "FIXED" else 0,
         "region": region,
-        "passes": sources(passes, *([GUIDE] if settings.use_denoising else [])),
+        "passes": names(passes),
     }

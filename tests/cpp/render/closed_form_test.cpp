@@ -186,7 +186,8 @@ TEST(Furnace, AWhiteBodyVanishesInAWhiteWorld) {
   settings.method = Method::kWorldLight;
   settings.clay_color = Vec3(1.0f);
   settings.samples = 64;
-  for (const auto sampling : {EnvironmentSampling::kMis, EnvironmentSampling::kCosine}) {
+  for (const auto sampling :
+       {EnvironmentSampling::kProduct, EnvironmentSampling::kMis, EnvironmentSampling::kCosine}) {
     settings.environment_sampling = sampling;
     for (const float value : render(scene, settings)) ASSERT_NEAR(value, 1.0f, 1e-6f);
   }

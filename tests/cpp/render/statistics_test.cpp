@@ -35,6 +35,7 @@ Settings sky_settings(EnvironmentSampling sampling, std::uint32_t samples) {
   s.method = Method::kWorldLight;
   s.environment_sampling = sampling;
   s.samples = samples;
+  s.light_samples = 1;
   s.pixel_filter = PixelFilter::kBox;
   return s;
 }
@@ -56,10 +57,14 @@ Estimate over_seeds(const std::shared_ptr<Scene>& scene, Settings settings, int 
 TEST(Strategies, AgreeInMeanUnderASun) {
   const auto scene = sunny_scene();
   const Estimate mis = over_seeds(scene, sky_settings(EnvironmentSampling::kMis, 64), 12);
+  const Estimate product = over_seeds(scene, sky_settings(EnvironmentSampling::kProduct, 64), 12);
   const Estimate map = over_seeds(scene, sky_settings(EnvironmentSampling::kEnvironment, 64), 12);
   const Estimate cosine = over_seeds(scene, sky_settings(EnvironmentSampling::kCosine, 256), 12);
   EXPECT_NEAR(mis.mean, map.mean, 4.0 * std::hypot(mis.error, map.error));
   EXPECT_NEAR(mis.mean, cosine.mean, 4.5 * std::hypot(mis.error, cosine.error));
+  EXPECT_NEAR(product.mean, map.mean, 4.0 * std::hypot(product.error, map.error));
+  EXPECT_NEAR(product.mean, mis.mean, 4.0 * std::hypot(product.error, mis.error));
+  EXPECT_LT(product.error, 0.01 * product.mean);
   EXPECT_LT(mis.error, 0.01 * mis.mean);
   EXPECT_LT(cosine.error, 0.05 * cosine.mean);
 }
@@ -92,6 +97,8 @@ TEST(Strategies, AConstantMapIsAUniformColour) {
   const Estimate mis = over_seeds(with_map, sky_settings(EnvironmentSampling::kMis, 32), 8);
   const Estimate exact = over_seeds(uniform, settings, 8);
   EXPECT_NEAR(mis.mean, exact.mean, 4.5 * std::hypot(mis.error, exact.error));
+  const Estimate product = over_seeds(with_map, sky_settings(EnvironmentSampling::kProduct, 32), 8);
+  EXPECT_NEAR(product.mean, exact.mean, 4.5 * std::hypot(product.error, exact.error));
 }
 
 /// Root mean square difference of two pictures.
@@ -119,10 +126,11 @@ double slope(const std::shared_ptr<Scene>& scene, Settings settings) {
 
 TEST(Convergence, IsAtLeastAsFastAsTheory) {
   const auto scene = sunny_scene();
-  const double sky = slope(scene, sky_settings(EnvironmentSampling::kMis, 1));
+  const double sky = slope(scene, sky_settings(EnvironmentSampling::kProduct, 1));
   EXPECT_LT(sky, -0.5);
   EXPECT_GT(sky, -1.6);
   Settings occlusion;
+  occlusion.light_samples = 1;
   occlusion.pixel_filter = PixelFilter::kBox;
   const double open = slope(scene, occlusion);
   EXPECT_LT(open, -0.6);

@@ -1,0 +1,203 @@
+#include "render/product_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/aabb.h"
+#include "parallel/thread_pool.h"
+#include "render/quantized_cdf.h"
+
+namespace komorebi {
+namespace {
+
+constexpr std::uint32_t kBins = 32, kRows = 32, kColumns = 64;
+
+/// A share of the map's mean radiance is added where the map shines: what is bright may be hidden
+/// (the sun, from inside a room), and what is seen then has rays enough.
+constexpr double kMeanShare = 0.25;
+
+/// No cell weighs less than this share of what the largest cosine in it would give: no normal in
+/// the bin meets light that is hardly ever sampled. It also bounds a sample by the film's limit.
+constexpr float kLeastShare = 0.5f;
+
+/// The angle between two directions of any length.
+double angle(const Vec3d& a, const Vec3d& b) {
+  return atan2_radians(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+std::vector<std::uint32_t> even_cuts(std::uint32_t count, std::uint32_t pieces) {
+  std::vector<std::uint32_t> cuts;
+  for (std::uint32_t i = 0; i <= pieces; ++i) {
+    cuts.push_back(static_cast<std::uint32_t>(std::uint64_t{count} * i / pieces));
+  }
+  return cuts;
+}
+
+/// What a cell's energy weighs for a bin whose middle has this cosine with the cell's centre: the
+/// root mean square of the clamped cosine, when it is spread evenly about that one with the given
+/// variance. No normal in the bin and no point of the cell are farther apart than by `reach` less,
+/// so nothing that can be lit weighs nothing. Without branches, for the compiler's sake.
+float cosine_weight(float cosine, float reach, float variance) {
+  const float largest = min_of(cosine + reach, 1.0f);
+  const float spread = std::sqrt(3.0f * variance);
+  const float above = max_of(cosine + spread, 0.0f);
+  const float whole = cosine * cosine + variance;
+  const float clipped = above * above * above / (6.0f * spread);
+  const float weight = max_of(std::sqrt(cosine < spread ? clipped : whole), kLeastShare * largest);
+  return largest > 0.0f ? weight : 0.0f;
+}
+
+/// Of the map's patch edge `column`, as a direction at height z.
+Vec3d edge_point(const EnvironmentView& map, std::uint32_t column, double z) {
+  const auto [sin_phi, cos_phi] = sin_cos_turns(0.5 - (column + 0.5) / map.width);
+  const double r = std::sqrt((1.0 - z) * (1.0 + z));
+  return Vec3d(r * cos_phi, r * sin_phi, z);
+}
+
+}  // namespace
+
+/// What the product needs to know of each cell, [rows][columns].
+struct ProductTable::Cells {
+  std::vector<double> energy;  ///< luminance times solid angle, to a common factor
+  std::vector<double> solid_angle;
+  std::vector<Vec3> centre;     ///< where its light comes from in the mean; unit length
+  std::vector<float> radius;    ///< bound of the angle from the centre to any point of the cell
+  std::vector<float> variance;  ///< of the light's angle from the centre, on one axis
+};
+
+ProductTable::ProductTable(const EnvironmentView& map)
+    : bins_(kBins),
+      rows_(std::min(kRows, map.height + 1)),
+      columns_(std::min(kColumns, map.width)) {
+  patch_row_ = even_cuts(map.height + 1, rows_);
+  patch_column_ = even_cuts(map.width, columns_);
+  const Cells cells = sum_cells(map);
+  row_cdf_.resize(std::size_t{bins_} * bins_ * (rows_ + 1));
+  column_cdf_.resize(std::size_t{bins_} * bins_ * rows_ * (columns_ + 1));
+  ThreadPool pool(0);  // once a map
+  pool.for_each_chunk(std::size_t{bins_} * bins_, 32, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t bin = begin; bin < end; ++bin)
+      fill_bin(static_cast<std::uint32_t>(bin), cells);
+  });
+}
+
+ProductTable::Cells ProductTable::sum_cells(const EnvironmentView& map) {
+  Cells cells;
+  const std::size_t strip = map.height + 1 + rows_;
+  patch_row_cdf_.resize(columns_ * strip);
+  std::vector<double> row_energy;
+  std::vector<SinCos<double>> angles(map.width);
+  for (std::uint32_t c = 0; c < map.width; ++c) {
+    angles[c] = sin_cos_turns(0.5 - (c + 1.0) / map.width);
+  }
+  for (std::uint32_t r = 0; r < rows_; ++r) {
+    for (std::uint32_t c = 0; c < columns_; ++c) {
+      Vec3d sum(0.0);
+      row_energy.clear();
+      for (std::uint32_t y = patch_row_[r]; y < patch_row_[r + 1]; ++y) {
+        const double height = map.row_z[y + 1] - map.row_z[y];
+        const double z = 0.5 * (map.row_z[y] + map.row_z[y + 1]);
+        const double radius = std::sqrt((1.0 - z) * (1.0 + z));
+        double energy = 0.0;
+        Vec3d along(0.0);
+        for (std::uint32_t x = patch_column_[c]; x < patch_column_[c + 1]; ++x) {
+          const auto w = detail::patch_weights(map, detail::environment_patch(map, y, x));
+          const double e = 0.25 * ((double{w.low_left} + double{w.low_right}) +
+                                   (double{w.high_left} + double{w.high_right}));
+          energy += e;
+          along += e * Vec3d(radius * angles[x].cos, radius * angles[x].sin, z);
+        }
+        row_energy.push_back(energy * height);
+        sum += height * along;
+      }
+      const double energy =
+          quantize_cdf(row_energy, &patch_row_cdf_[c * strip + patch_row_[r] + r]);
+      const double z0 = map.row_z[patch_row_[r]], z1 = map.row_z[patch_row_[r + 1]];
+      const double length = glm::length(sum);
+      const std::uint32_t patches = patch_column_[c + 1] - patch_column_[c];
+      const bool narrow = 4 * patches <= map.width;  // the corners are then its farthest points
+      const bool has_centre = narrow && length > 1e-3 * energy;
+      const Vec3d centre = has_centre ? sum / length : Vec3d(0.0, 0.0, 1.0);
+      double radius = kPi;
+      if (has_centre) {
+        radius = 0.0;
+        for (const std::uint32_t edge : {patch_column_[c], patch_column_[c + 1]}) {
+          for (const double z : {z0, z1}) {
+            radius = std::max(radius, angle(centre, edge_point(map, edge, z)));
+          }
+        }
+      }
+      const double mean_cosine = has_centre ? std::min(1.0, length / energy) : 0.0;
+      cells.energy.push_back(energy);
+      cells.solid_angle.push_back(patches * (z1 - z0));
+      cells.centre.push_back(Vec3(centre));
+      cells.radius.push_back(static_cast<float>(radius) + 1e-4f);
+      cells.variance.push_back(static_cast<float>(1.0 - mean_cosine * mean_cosine) * 0.5f);
+    }
+  }
+  double energy = 0.0, solid_angle = 0.0;
+  for (const double e : cells.energy) energy += e;
+  for (const double s : cells.solid_angle) solid_angle += s;
+  for (std::size_t i = 0; i < cells.energy.size(); ++i) {
+    if (cells.energy[i] > 0.0) {
+      cells.energy[i] += kMeanShare * (energy / solid_angle) * cells.solid_angle[i];
+    }
+  }
+  return cells;
+}
+
+void ProductTable::fill_bin(std::uint32_t bin, const Cells& cells) {
+  const auto corner = [&](double x, double y) {
+    const double column = bin % bins_ + x, row = bin / bins_ + y;
+    return Vec3d(direction_from_octahedral(
+        Vec2(Vec3d(2.0 * column / bins_ - 1.0, 2.0 * row / bins_ - 1.0, 0))));
+  };
+  const Vec3d middle = glm::normalize(corner(0.5, 0.5));
+  double bin_radius = 0.0;
+  for (const double x : {0.0, 1.0}) {
+    for (const double y : {0.0, 1.0})
+      bin_radius = std::max(bin_radius, angle(middle, corner(x, y)));
+  }
+  const Vec3 normal(middle);
+  const auto reach = static_cast<float>(bin_radius);
+  const auto bin_variance = static_cast<float>(bin_radius * bin_radius / 6.0);
+  std::vector<float> weight(columns_);
+  std::vector<double> product(columns_), row_weight(rows_);
+  for (std::uint32_t r = 0; r < rows_; ++r) {
+    const std::size_t first = std::size_t{r} * columns_;
+    const Vec3* const centre = &cells.centre[first];
+    const float* const radius = &cells.radius[first];
+    const float* const variance = &cells.variance[first];
+    for (std::uint32_t c = 0; c < columns_; ++c) {
+      const float cosine =
+          (normal.x * centre[c].x + normal.y * centre[c].y) + normal.z * centre[c].z;
+      weight[c] = cosine_weight(cosine, reach + radius[c], bin_variance + variance[c]);
+    }
+    for (std::uint32_t c = 0; c < columns_; ++c) {
+      product[c] = cells.energy[first + c] * static_cast<double>(weight[c]);
+    }
+    row_weight[r] =
+        quantize_cdf(product, &column_cdf_[(std::size_t{bin} * rows_ + r) * (columns_ + 1)]);
+  }
+  quantize_cdf(row_weight, &row_cdf_[std::size_t{bin} * (rows_ + 1)]);
+}
+
+ProductView ProductTable::view() const {
+  ProductView view;
+  view.bins = bins_;
+  view.rows = rows_;
+  view.columns = columns_;
+  view.patch_row = patch_row_.data();
+  view.patch_column = patch_column_.data();
+  view.row_cdf = row_cdf_.data();
+  view.column_cdf = column_cdf_.data();
+  view.patch_row_cdf = patch_row_cdf_.data();
+  return view;
+}
+
+std::size_t ProductTable::byte_count() const {
+  return sizeof(std::uint32_t) * (patch_row_.size() + patch_column_.size() + row_cdf_.size() +
+                                  column_cdf_.size() + patch_row_cdf_.size());
+}
+
+}  // namespace komorebi
