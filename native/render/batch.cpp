@@ -53,28 +53,42 @@ void BatchIntegrator::begin_light(std::uint32_t path) {
 }
 
 bool BatchIntegrator::light(const Cancel& cancel) {
+  light_block_.clear();
+  block_owners_.clear();
   for (std::uint32_t i = 0; i < paths_.size(); ++i) {
     if (!hits_[i].valid()) continue;
     const Sampler sampler(context_.seed, paths_[i].x, paths_[i].y);
-    begin_light(i);
-    for (std::uint32_t j = 0; j < context_.light_samples; ++j) {
-      const LightSample drawn = sample_light(context_, points_[i], sampler,
-                                             paths_[i].sample * context_.light_samples + j);
-      if (drawn.contribution == Vec3(0.0f)) continue;
-      if (light_rays_.ray_count() == kLightRaysPerBatch) {
-        flush_light();
-        if (cancel.raised()) return false;
-        begin_light(i);
-      }
-      light_rays_.push_ray(drawn.direction, context_.light_distance);
-      contributions_.push_back(drawn.contribution);
-    }
+    light_block_.push(points_[i], sampler.pixel_seed, paths_[i].sample * context_.light_samples);
+    block_owners_.push_back(i);
+    if (light_block_.full() && !cast_block(cancel)) return false;
   }
+  if (!cast_block(cancel)) return false;
   flush_light();
   for (std::uint32_t i = 0; i < paths_.size(); ++i) {
     if (hits_[i].valid()) results_[i].radiance /= static_cast<float>(context_.light_samples);
   }
   return !cancel.raised();
+}
+
+bool BatchIntegrator::cast_block(const Cancel& cancel) {
+  light_block_.draw(context_);
+  for (std::uint32_t p = 0; p < light_block_.size(); ++p) {
+    begin_light(block_owners_[p]);
+    for (std::uint32_t j = 0; j < context_.light_samples; ++j) {
+      const Vec3 contribution = light_block_.contribution(p, j);
+      if (contribution == Vec3(0.0f)) continue;
+      if (light_rays_.ray_count() == kLightRaysPerBatch) {
+        flush_light();
+        if (cancel.raised()) return false;
+        begin_light(block_owners_[p]);
+      }
+      light_rays_.push_ray(light_block_.direction(p, j), context_.light_distance);
+      contributions_.push_back(contribution);
+    }
+  }
+  light_block_.clear();
+  block_owners_.clear();
+  return true;
 }
 
 void BatchIntegrator::flush_light() {

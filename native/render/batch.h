@@ -6,6 +6,7 @@
 #include "render/cells.h"
 #include "render/context.h"
 #include "render/film.h"
+#include "render/light_block.h"
 #include "render/ray_batch.h"
 
 namespace komorebi {
@@ -14,7 +15,8 @@ namespace komorebi {
 /// rays → occlusion → film. The arrays live as long as the object, one a thread.
 class BatchIntegrator {
  public:
-  explicit BatchIntegrator(const RenderContext& context) : context_(context) {}
+  explicit BatchIntegrator(const RenderContext& context)
+      : context_(context), light_block_(context.light_samples) {}
 
   /// Adds samples [first, first + count) of every pixel of `cells` to `sums`.
   /// False when cancelled on the way; the sums are then to be thrown away.
@@ -34,6 +36,7 @@ class BatchIntegrator {
   void start(std::size_t begin, std::size_t end, std::uint32_t first);
   void shade();
   bool light(const Cancel& cancel);
+  bool cast_block(const Cancel& cancel);
   void begin_light(std::uint32_t path);
   void flush_light();
 
@@ -44,6 +47,8 @@ class BatchIntegrator {
   std::vector<Hit> hits_;
   std::vector<SurfacePoint> points_;
   std::vector<PixelSample> results_;
+  LightBlockBuffer light_block_;
+  std::vector<std::uint32_t> block_owners_;  // the path of each of its points
   BundleBatch light_rays_;
   std::vector<std::uint32_t> light_owners_;  // the path of each of their points
   std::vector<Vec3> contributions_;          // of each light ray, if it arrives

@@ -1,0 +1,195 @@
+// sample_product (core/environment_product.h) in lanes, to the bit; see lanes-inl.h.
+
+HWY_BEFORE_NAMESPACE();
+namespace komorebi {
+namespace HWY_NAMESPACE {
+namespace {
+
+HWY_INLINE Uint gather(const std::uint32_t* base, Uint index) {
+  return hn::GatherIndex(TagU(), base, hn::BitCast(TagI(), index));
+}
+HWY_INLINE Float gather(const float* base, Uint index) {
+  return hn::GatherIndex(TagF(), base, hn::BitCast(TagI(), index));
+}
+HWY_INLINE Double gather(const double* base, Uint index) {
+  const hn::Rebind<std::int64_t, TagD> d;
+  return hn::GatherIndex(TagD(), base, hn::BitCast(d, hn::PromoteTo(TagU64(), index)));
+}
+
+struct SelectionLanes {
+  Uint entry;  ///< from `first` on
+  Double fraction, probability;
+};
+
+/// detail::select among the `count` entries from cdf[first] on; `most` is the largest count.
+HWY_INLINE SelectionLanes select_lanes(const std::uint32_t* cdf, Uint first, Uint count,
+                                       Double position) {
+  const Uint start = gather(cdf, first);
+  const Double total = to_double(hn::Sub(gather(cdf, hn::Add(first, count)), start));
+  const Double offset = position * total;
+  const Double last = total - f64(1.0);
+  const Double whole = hn::IfThenElse(hn::Lt(offset, last), offset, last);
+  const Uint target = hn::Add(start, hn::BitCast(TagU(), hn::DemoteTo(TagI(), whole)));
+  Uint at = first, left = count;
+  while (!hn::AllFalse(TagU(), hn::Gt(left, u32(1)))) {
+    const Uint half = hn::ShiftRight<1>(left);
+    const Uint middle = hn::Add(at, half);
+    at = hn::IfThenElse(hn::Gt(gather(cdf, middle), target), at, middle);
+    left = hn::Sub(left, half);
+  }
+  const Uint begin = gather(cdf, at);
+  const Double width = to_double(hn::Sub(gather(cdf, hn::Add(at, u32(1))), begin));
+  return {hn::Sub(at, first), (offset - to_double(hn::Sub(begin, start))) / width, width / total};
+}
+
+HWY_INLINE Float below_one_lanes(Double fraction) {
+  const Float f = to_float(fraction);
+  const Float most = f32(kOneMinusEpsilon);
+  return hn::IfThenElse(hn::Lt(f, most), f, most);
+}
+
+HWY_INLINE Uint octahedral_cell_lanes(const Vec3Lanes& d, std::uint32_t n) {
+  const Float ax = hn::Abs(d.x), ay = hn::Abs(d.y), az = hn::Abs(d.z);
+  const Float sum = (ax + ay) + az;
+  const Float zero = f32(0.0f), one = f32(1.0f);
+  const Float folded_x = one - ay / sum, folded_y = one - ax / sum;
+  const auto lower = hn::Lt(d.z, zero);
+  const Float px = hn::IfThenElse(
+      lower, hn::IfThenElse(hn::Lt(d.x, zero), hn::Neg(folded_x), folded_x), d.x / sum);
+  const Float py = hn::IfThenElse(
+      lower, hn::IfThenElse(hn::Lt(d.y, zero), hn::Neg(folded_y), folded_y), d.y / sum);
+  const Float half = f32(0.5f * static_cast<float>(n));
+  const Float last = f32(static_cast<float>(n - 1));
+  const auto limited = [&](Float x) HWY_ATTR {
+    return hn::IfThenElse(hn::Gt(x, zero), hn::IfThenElse(hn::Lt(x, last), x, last), zero);
+  };
+  const Uint column = truncated(limited(half + half * px));
+  const Uint row = truncated(limited(half + half * py));
+  return hn::Add(hn::Mul(row, u32(n)), column);
+}
+
+/// The nine numbers of a matrix, column by column.
+HWY_INLINE const float* entries(const Mat3& m) {
+  static_assert(sizeof(Mat3) == 9 * sizeof(float));
+  return reinterpret_cast<const float*>(&m);
+}
+
+struct EnvironmentSampleLanes {
+  Vec3Lanes direction, radiance;
+  Float pdf;
+};
+
+struct TexelLanes {
+  HWY_INLINE TexelLanes(const EnvironmentView& e, Uint row, Uint column) {
+    const Uint i = hn::Mul(u32(3), hn::Add(hn::Mul(row, u32(e.width)), column));
+    rgb = {gather(e.texels, i), gather(e.texels, hn::Add(i, u32(1))),
+           gather(e.texels, hn::Add(i, u32(2)))};
+    luminance = (f32(0.2126f) * rgb.x + f32(0.7152f) * rgb.y) + f32(0.0722f) * rgb.z;
+  }
+  Vec3Lanes rgb;
+  Float luminance;
+};
+
+/// detail::sample_patch
+HWY_INLINE EnvironmentSampleLanes sample_patch_lanes(const EnvironmentView& e, Uint row,
+                                                     Uint column, Float column_fraction,
+                                                     Float row_fraction, Double probability) {
+  const Uint zero = u32(0), one = u32(1);
+  const auto lowest = hn::Eq(row, zero);
+  const auto highest = hn::Eq(row, u32(e.height));
+  const Uint next = hn::Add(column, one);
+  const Uint low_row = hn::IfThenElse(lowest, u32(e.height - 1), hn::Sub(row, one));
+  const Uint high_row = hn::IfThenElse(highest, zero, row);
+  const Uint right = hn::IfThenElse(hn::Eq(next, u32(e.width)), zero, next);
+  const TexelLanes low_left(e, low_row, column), low_right(e, low_row, right);
+  const TexelLanes high_left(e, high_row, column), high_right(e, high_row, right);
+
+  const Float half = f32(0.5f);
+  const auto lowest_f = hn::RebindMask(TagF(), lowest);
+  const auto highest_f = hn::RebindMask(TagF(), highest);
+  const Float middle_left = half * low_left.luminance + half * high_left.luminance;
+  const Float middle_right = half * low_right.luminance + half * high_right.luminance;
+  const Float ll = hn::IfThenElse(lowest_f, middle_left, low_left.luminance);
+  const Float lr = hn::IfThenElse(lowest_f, middle_right, low_right.luminance);
+  const Float hl = hn::IfThenElse(highest_f, middle_left, high_left.luminance);
+  const Float hr = hn::IfThenElse(highest_f, middle_right, high_right.luminance);
+
+  const Float up = sample_linear_lanes(row_fraction, half * ll + half * lr, half * hl + half * hr);
+  const Float across = sample_linear_lanes(column_fraction, mix(ll, hl, up), mix(lr, hr, up));
+
+  const Double z0 = gather(e.row_z, row);
+  const Double height = gather(e.row_z, hn::Add(row, one)) - z0;
+  const Double z = z0 + to_double(up) * height;
+  const Float r = to_float(hn::Sqrt((f64(1.0) - z) * (f64(1.0) + z)));
+  const Float turns =
+      half - ((to_float(column) + half) + across) / f32(static_cast<float>(e.width));
+  const SinCosLanes phi = sin_cos_turns_lanes(turns);
+  const Vec3Lanes local = {r * phi.cos, r * phi.sin, to_float(z)};
+
+  const Float v = half + atan2_right_lanes(local.z, r) * f32(kInvPi);
+  const Float t = (v * f32(static_cast<float>(e.height)) - half) - (to_float(row) - f32(1.0f));
+  const Float inside = hn::IfThenElse(
+      hn::Gt(t, f32(0.0f)), hn::IfThenElse(hn::Lt(t, f32(1.0f)), t, f32(1.0f)), f32(0.0f));
+  const Float strength = f32(e.strength);
+  const auto channel = [&](Float a, Float b, Float c, Float d) HWY_ATTR {
+    return strength * mix(mix(a, b, across), mix(c, d, across), inside);
+  };
+  EnvironmentSampleLanes sample;
+  sample.direction = transposed_times(entries(e.texture_from_world), local);
+  sample.radiance = {channel(low_left.rgb.x, low_right.rgb.x, high_left.rgb.x, high_right.rgb.x),
+                     channel(low_left.rgb.y, low_right.rgb.y, high_left.rgb.y, high_right.rgb.y),
+                     channel(low_left.rgb.z, low_right.rgb.z, high_left.rgb.z, high_right.rgb.z)};
+
+  const Float quarter = f32(0.25f);
+  const Float mean = ((quarter * ll + quarter * lr) + quarter * hl) + quarter * hr;
+  const Float shape = mix(mix(ll, lr, across), mix(hl, hr, across), up) / mean;
+  const Double solid_angle = f64(2.0 * kPi / e.width) * height;
+  const Float pdf = to_float(probability / solid_angle * to_double(shape));
+  sample.pdf = hn::IfThenElseZero(hn::Gt(mean, f32(0.0f)), pdf);
+  return sample;
+}
+
+/// sample_product; pdf = 0 where there is no light.
+HWY_INLINE EnvironmentSampleLanes sample_product_lanes(const EnvironmentView& e,
+                                                       const ProductView& p, Uint bin, Uint bits_x,
+                                                       Uint bits_y) {
+  const Double unit = f64(2.3283064365386963e-10);  // 2^-32
+  const Double u = (to_double(bits_x) + f64(0.5)) * unit;
+  const Double v = (to_double(bits_y) + f64(0.5)) * unit;
+  const Uint one = u32(1);
+  const Uint row_base = hn::Mul(bin, u32(p.rows + 1));
+  const Uint all = gather(p.row_cdf, hn::Add(row_base, u32(p.rows)));
+
+  const auto row = select_lanes(p.row_cdf, row_base, u32(p.rows), v);
+  const Uint column_base =
+      hn::Mul(hn::Add(hn::Mul(bin, u32(p.rows)), row.entry), u32(p.columns + 1));
+  const auto column = select_lanes(p.column_cdf, column_base, u32(p.columns), u);
+
+  const Uint first_row = gather(p.patch_row, row.entry);
+  const Uint end_row = gather(p.patch_row, hn::Add(row.entry, one));
+  const Uint in_cell =
+      hn::Add(hn::Mul(column.entry, u32(e.height + 1 + p.rows)), hn::Add(first_row, row.entry));
+  const auto patch_row =
+      select_lanes(p.patch_row_cdf, in_cell, hn::Sub(end_row, first_row), row.fraction);
+  const Uint at_row = hn::Add(first_row, patch_row.entry);
+
+  const Uint first_column = gather(p.patch_column, column.entry);
+  const Uint end_column = gather(p.patch_column, hn::Add(column.entry, one));
+  const Uint in_row = hn::Add(hn::Mul(at_row, u32(e.width + 1)), first_column);
+  const auto patch_column =
+      select_lanes(e.column_cdf, in_row, hn::Sub(end_column, first_column), column.fraction);
+
+  const Double probability =
+      (row.probability * column.probability) * (patch_row.probability * patch_column.probability);
+  EnvironmentSampleLanes sample = sample_patch_lanes(
+      e, at_row, hn::Add(first_column, patch_column.entry), below_one_lanes(patch_column.fraction),
+      below_one_lanes(patch_row.fraction), probability);
+  const auto dark = hn::RebindMask(TagF(), hn::Eq(all, u32(0)));
+  sample.pdf = hn::IfThenZeroElse(dark, sample.pdf);
+  return sample;
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace komorebi
+HWY_AFTER_NAMESPACE();

@@ -1,0 +1,113 @@
+// Light rays drawn in lanes are those of sample_light, to the bit, for every instruction set.
+#include <gtest/gtest.h>
+
+#include "bvh/traverse.h"
+#include "render/light.h"
+#include "render/light_block.h"
+#include "support/direction_test.h"
+#include "support/environment_maps.h"
+
+namespace komorebi {
+namespace {
+
+using testing::RandomBits;
+
+Vec3 random_direction(RandomBits& random) {
+  const Bits2 bits = random.next();
+  return uniform_sphere(Vec2(to_unit_float(bits.x), to_unit_float(bits.y)));
+}
+
+/// Ends of octahedral bins, axes, −0, and many at random; half of them with a geometric normal of
+/// their own.
+std::vector<SurfacePoint> some_points(std::size_t count) {
+  RandomBits random(7);
+  std::vector<SurfacePoint> points;
+  for (const Vec3& n : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(-1, -0.0f, 0),
+                        Vec3(0, 1, -0.0f), Vec3(-0.0f, -1, 0), glm::normalize(Vec3(1, 1, 1e-7f)),
+                        glm::normalize(Vec3(-1, 1, -1e-7f)), glm::normalize(Vec3(1, 0, 1))}) {
+    SurfacePoint point;
+    point.normal = point.geometric_normal = n;
+    points.push_back(point);
+  }
+  while (points.size() < count) {
+    SurfacePoint point;
+    point.normal = point.geometric_normal = random_direction(random);
+    if (points.size() % 2 == 0) {
+      point.geometric_normal = glm::normalize(point.normal + 0.7f * random_direction(random));
+    }
+    points.push_back(point);
+  }
+  return points;
+}
+
+void expect_equal_to_scalar(RenderContext context, std::uint32_t rays, std::size_t count) {
+  context.light_samples = rays;
+  const std::vector<SurfacePoint> points = some_points(count);
+  for (const std::string& name : built_instruction_sets()) {
+    force_instruction_set(name);
+    LightBlockBuffer block(rays);
+    std::uint32_t lit = 0;
+    for (std::uint32_t first = 0; first < points.size();) {
+      block.clear();
+      std::uint32_t end = first;
+      for (; end < points.size() && !block.full(); ++end) {
+        block.push(points[end], Sampler(3, end, 5).pixel_seed, 11 * end);
+      }
+      block.draw(context);
+      for (std::uint32_t p = first; p < end; ++p) {
+        for (std::uint32_t j = 0; j < rays; ++j) {
+          const LightSample expected =
+              sample_light(context, points[p], Sampler(3, p, 5), 11 * p + j);
+          ASSERT_EQ(block.contribution(p - first, j), expected.contribution) << name << " " << p;
+          if (expected.contribution == Vec3(0.0f)) continue;
+          ASSERT_EQ(block.direction(p - first, j), expected.direction) << name << " " << p;
+          ++lit;
+        }
+      }
+      first = end;
+    }
+    EXPECT_GT(lit, points.size() * rays / 3) << name;
+  }
+  force_instruction_set("");
+}
+
+TEST(LightKernel, AmbientOcclusion) {
+  RenderContext context;
+  expect_equal_to_scalar(context, 1, 3000);
+  expect_equal_to_scalar(context, 5, 777);
+  expect_equal_to_scalar(context, 1500, 20);
+  context.ao_sampling = AoSampling::kUniform;
+  expect_equal_to_scalar(context, 2, 100);
+}
+
+TEST(LightKernel, ProductOfMapAndCosine) {
+  const Mat3d turn(glm::dvec3(0.36, 0.48, -0.8), glm::dvec3(-0.8, 0.6, 0.0),
+                   glm::dvec3(0.48, 0.64, 0.6));
+  RenderContext context;
+  context.method = Method::kWorldLight;
+  context.albedo = Vec3(0.8f, 0.5f, 0.3f);
+  for (const auto& [width, height] : {std::pair{1, 1}, {2, 1}, {5, 3}, {64, 31}, {150, 70}}) {
+    const Environment map = testing::random_map(static_cast<std::uint32_t>(width),
+                                                static_cast<std::uint32_t>(height), 3);
+    if (map.black()) continue;
+    context.environment = map.view(1.7, turn);
+    context.product = map.product_table().view();
+    expect_equal_to_scalar(context, 3, 2000);
+  }
+  const Environment sunny = testing::sunny_map(1024, 512, 77, 400, 1e6f);
+  context.environment = sunny.view(1.0, Mat3d(1.0));
+  context.product = sunny.product_table().view();
+  expect_equal_to_scalar(context, 16, 4000);
+}
+
+TEST(LightKernel, OtherStrategies) {
+  const Environment map = testing::random_map(30, 20, 5);
+  RenderContext context;
+  context.method = Method::kWorldLight;
+  context.environment = map.view();
+  context.cosine_share = 0.5f;
+  expect_equal_to_scalar(context, 2, 200);
+}
+
+}  // namespace
+}  // namespace komorebi
