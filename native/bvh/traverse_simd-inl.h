@@ -33,8 +33,9 @@ HWY_INLINE BoxVec planes(const WideNode& node, int axis, int side, std::size_t p
   const BoxTag d;
   const IndexTag di;
   const auto q = hn::PromoteTo(di, hn::LoadU(PlaneTag(), node.q[axis][side] + part));
-  return hn::Add(hn::Set(d, node.origin[axis]),
-                 hn::Mul(hn::ConvertTo(d, q), hn::Set(d, node.step(axis))));
+  // The product is exact (a power of two), so that nothing depends on whether it is fused.
+  return hn::MulAdd(hn::ConvertTo(d, q), hn::Set(d, node.step(axis)),
+                    hn::Set(d, node.origin[axis]));
 }
 
 /// Bit i is set if the ray meets child i within [begin, end]; begins[i] is where it enters.
@@ -258,23 +259,7 @@ void occluded(const SceneView& scene, const RaySpan& rays, std::uint32_t* bits) 
   }
 }
 
-void occluded_bundles(const SceneView& scene, const RayBundles& bundles, std::uint32_t* bits) {
-  const std::uint32_t count = bundles.ray_count();
-  for (std::uint32_t i = 0; i < (count + 31) / 32; ++i) bits[i] = 0;
-  for (std::uint32_t p = 0; p < bundles.point_count; ++p) {
-    for (std::uint32_t i = bundles.first_ray[p]; i < bundles.first_ray[p + 1]; ++i) {
-      if (trace<true>(scene, bundles.ray(p, i), OpaqueFilter{}).valid())
-        bits[i / 32] |= 1u << (i % 32);
-    }
-  }
-}
-
 }  // namespace
-
-extern const Kernel kKernel;
-constexpr Kernel kKernel = {&HWY_STR(HWY_NAMESPACE)[2], &intersect, &occluded,
-                            &occluded_bundles};  // N_AVX2: "AVX2"
-
 }  // namespace HWY_NAMESPACE
 }  // namespace komorebi
 HWY_AFTER_NAMESPACE();
