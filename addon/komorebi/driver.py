@@ -9,6 +9,8 @@ from typing import Any, TypeVar
 import bpy
 
 from . import background, core, dump, jobs, native_scene, reporting
+from .denoise import library as oidn
+from .denoise import run as denoise
 from .errors import RenderCancelled, RenderError
 from .export import export_scene
 from .export.camera import export_camera
@@ -18,7 +20,7 @@ from .framing import Region, render_region
 from .passes import Pass, enabled_passes
 from .progress import Progress
 from .result import ResultWriter
-from .scene_data import CameraData, SceneData
+from .scene_data import CameraData, FloatArray, SceneData
 from .views import active_views
 
 T = TypeVar("T")
@@ -42,6 +44,7 @@ class Frame:
     region: Region
     passes: list[Pass]
     settings: dict[str, Any]
+    oidn: str  # the library to denoise with; "": the picture stays as it is
     scene: SceneData
     views: list[View]
 
@@ -52,17 +55,27 @@ def export_frame(engine: Any, depsgraph: Any) -> Frame | None:
     scene = depsgraph.scene
     layer = name_of(depsgraph.view_layer)
     engine.update_stats("", f"{layer} | Exporting the scene")
+    oidn = _denoiser(scene)
     framing = jobs.framing_scene(scene.original).render
     region = render_region(framing, engine.resolution_x, engine.resolution_y)
     if region[0] >= region[2] or region[1] >= region[3]:
         raise RenderError("The render border holds no pixel")
-    passes = enabled_passes(depsgraph.view_layer)
+    passes = enabled_passes(scene, depsgraph.view_layer)
     names = active_views(scene)
     data = export_scene(engine, depsgraph, names[0])
     views = [View(names[0], data.camera)]
     views += [View(name, export_camera(engine, depsgraph, name)) for name in names[1:]]
     settings = export_settings(scene, passes, region)
-    return Frame(layer, region, passes, settings, data, views)
+    return Frame(layer, region, passes, settings, oidn, data, views)
+
+
+def _denoiser(scene: Any) -> str:
+    if not scene.komorebi.use_denoising:
+        return ""
+    library = oidn.find()
+    if library.missing:  # now, not after an hour
+        raise RenderError(f"Denoising is switched on. {library.missing}")
+    return library.path
 
 
 def render_frame(engine: Any, _depsgraph: Any, frame: Frame) -> None:
@@ -106,10 +119,12 @@ def _render_view(engine: Any, frame: Frame, parts: native_scene.Parts, view: Vie
     if dump.write(scene, settings):
         return
     writer = ResultWriter(engine, frame.layer, view.name, frame.region, frame.passes)
-    _run_session(engine, native.Session(scene, settings), writer, progress)
+    _run_session(engine, native.Session(scene, settings), writer, progress, frame)
 
 
-def _run_session(engine: Any, session: Any, writer: ResultWriter, progress: Progress) -> None:
+def _run_session(
+    engine: Any, session: Any, writer: ResultWriter, progress: Progress, frame: Frame
+) -> None:
     """Polls until the picture is done; when cancelled, what is done stays."""
     show_tiles = not bpy.app.background
     cancelled = False
@@ -129,8 +144,31 @@ def _run_session(engine: Any, session: Any, writer: ResultWriter, progress: Prog
         raise
     if session.error:
         raise RenderError(session.error)
-    writer.finish(session)
+    picture = None
+    if frame.oidn and not cancelled:
+        progress.stage("Denoising")
+        picture = _denoised(engine, session, frame)
+    writer.finish(session, picture)
     progress.update(session, final=True)
+
+
+def _denoised(engine: Any, session: Any, frame: Frame) -> FloatArray | None:
+    """The denoised Combined; None when the user stops it, and keeps the noisy picture."""
+    x_min, y_min, x_max, y_max = frame.region
+    width, height, settings = x_max - x_min, y_max - y_min, frame.settings
+    clay = settings["clay_color"] if settings["method"] == "WORLD_LIGHT" else (1.0, 1.0, 1.0)
+    albedo, normal = denoise.guides(session, width, height, clay)
+    picture = session.read("Combined", 0, 0, width, height)
+    kill = denoise.Kill()
+    try:
+        return background.run(
+            lambda: denoise.denoised(
+                frame.oidn, picture, albedo, normal, settings["threads"], kill
+            ),
+            engine.test_break, kill,
+        )  # fmt: skip
+    except RenderCancelled:
+        return None
 
 
 def _tile_count(region: Region) -> int:

@@ -16,6 +16,18 @@ from .scene_data import CameraData, EnvironmentImage, MeshData, SceneData
 
 
 @dataclass(slots=True)
+class KnownMesh:
+    """The cache's entry for a geometry: the mesh that was made of it last."""
+
+    mesh: Any | None = None  # core.Mesh
+    shading: bytes = b""  # digest of what is not its geometry
+
+    @property
+    def byte_count(self) -> int:
+        return 0 if self.mesh is None else int(self.mesh.byte_count)
+
+
+@dataclass(slots=True)
 class Parts:
     """What all views of a frame share, in the core's own form."""
 
@@ -29,14 +41,20 @@ def load(core: Any, data: SceneData, threads: int, cancel: Any) -> Parts:
     Arrays of a mesh are dropped as soon as the core has its own. Raises what the core raises:
     ValueError and RuntimeError with a sentence, core.Cancelled.
     """
-    keys = [b"mesh" + _digest(core, mesh.arrays(), threads) for mesh in data.meshes]
+    # Normals are no part of the key: Blender 3.4 adds them up in the order of its threads, so that
+    # the same mesh has other ones each time, which would build its tree anew.
+    keys = [b"mesh" + _digest(core, mesh.geometry(), threads) for mesh in data.meshes]
     image = data.world.image
     image_key = None if image is None else _image_key(core, image, threads)
     cache.make_room({*keys, image_key})
     parts = Parts()
     for index, mesh in enumerate(data.meshes):
-        make = partial(_native_mesh, core, mesh, threads, cancel)
-        parts.meshes.append(cache.get(keys[index], make))
+        known = cache.get(keys[index], KnownMesh)
+        shading = _digest(core, mesh.shading(), threads)
+        if known.shading != shading:
+            known.mesh = _native_mesh(core, mesh, threads, cancel, known.mesh)
+            known.shading = shading
+        parts.meshes.append(known.mesh)
         data.meshes[index] = None  # type: ignore[call-overload]
     if image is not None and image_key is not None:
         parts.environment = cache.get(image_key, partial(_native_environment, core, image))
@@ -80,13 +98,15 @@ def _digest(core: Any, arrays: Iterable[NDArray[Any] | None], threads: int) -> b
     return digest.digest()
 
 
-def _native_mesh(core: Any, mesh: MeshData, threads: int, cancel: Any) -> Any:
+def _native_mesh(
+    core: Any, mesh: MeshData, threads: int, cancel: Any, same_geometry: Any | None
+) -> Any:
     return core.Mesh(
         mesh.name, mesh.positions, mesh.corner_verts, mesh.face_offsets,
         tri2corner=mesh.tri2corner, tri2face=mesh.tri2face, corner_normals=mesh.corner_normals,
         vertex_normals=mesh.vertex_normals, smooth_faces=mesh.smooth_faces,
         face_materials=mesh.face_materials,
-        threads=threads, cancel=cancel,
+        threads=threads, cancel=cancel, same_geometry=same_geometry,
     )  # fmt: skip
 
 

@@ -2,38 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 
 @dataclass(frozen=True)
 class Pass:
-    """One pass; `name` is Blender's and the core's alike."""
+    """One pass by Blender's name; `source` is the core's."""
 
     name: str
     channels: int
     channel_ids: str
     kind: str  # Blender's socket type: COLOR, VECTOR, VALUE
-    switch: str | None  # property of the view layer; None: always there
+    source: str
+    wanted: Callable[[Any, Any], bool]  # (scene, view layer) → whether it is switched on
 
 
 PASSES = (
-    Pass("Combined", 4, "RGBA", "COLOR", None),
-    Pass("Depth", 1, "Z", "VALUE", "use_pass_z"),
-    Pass("Normal", 3, "XYZ", "VECTOR", "use_pass_normal"),
+    Pass("Combined", 4, "RGBA", "COLOR", "Combined", lambda *_: True),
+    Pass("Depth", 1, "Z", "VALUE", "Depth", lambda _, layer: layer.use_pass_z),
+    Pass("Normal", 3, "XYZ", "VECTOR", "Normal", lambda _, layer: layer.use_pass_normal),
+    # Combined as it was before denoising; the name is Cycles'.
+    Pass("Noisy Image", 4, "RGBA", "COLOR", "Combined", lambda s, _: s.komorebi.use_denoising),
 )
 
 
-def enabled_passes(view_layer: Any) -> list[Pass]:
-    """The passes that `view_layer` asks for."""
-    return [p for p in PASSES if p.switch is None or getattr(view_layer, p.switch)]
+def enabled_passes(scene: Any, view_layer: Any) -> list[Pass]:
+    """The passes that `view_layer` of `scene` asks for."""
+    return [p for p in PASSES if p.wanted(scene, view_layer)]
 
 
 def register_passes(engine: Any, scene: Any, view_layer: Any) -> None:
-    for p in enabled_passes(view_layer):
+    for p in enabled_passes(scene, view_layer):
         engine.register_pass(scene, view_layer, p.name, p.channels, p.channel_ids, p.kind)
 
 
-def names(passes: Sequence[Pass]) -> tuple[str, ...]:
-    return tuple(p.name for p in passes)
+def sources(passes: Sequence[Pass], *more: str) -> tuple[str, ...]:
+    """What the core has to keep for them, and `more` that is not told to Blender."""
+    return tuple(dict.fromkeys((*(p.source for p in passes), *more)))

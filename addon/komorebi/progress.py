@@ -23,6 +23,10 @@ class Progress:
         self._next = 0.0
         self._tiles = 0
 
+    def stage(self, text: str) -> None:
+        """Announces what is no sampling."""
+        self._engine.update_stats("", f"{self._label} | {text}")
+
     def add_tiles(self, count: int) -> None:
         self._tiles += count
 

@@ -34,6 +34,12 @@ PIXEL_FILTERS = (
 )
 
 
+def _update_render_passes(_: Any, context: Any) -> None:
+    """Lets the compositor's sockets follow a pass that is switched on or off."""
+    if context.view_layer is not None:
+        context.view_layer.update_render_passes()
+
+
 class KomorebiSceneSettings(bpy.types.PropertyGroup):
     """Settings of the Komorebi render engine"""
 
@@ -86,6 +92,12 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         name="Use Animated Seed", description="Another seed, and so another noise, in each frame",
         default=False,
     )  # fmt: skip
+    use_denoising: BoolProperty(
+        name="Use Denoising",
+        description="Denoise the picture with Open Image Denoise, guided by albedo and normal; "
+        "the pass Noisy Image keeps it as it was",
+        default=False, update=_update_render_passes,
+    )  # fmt: skip
     ao_distance: FloatProperty(
         name="Distance", description="How far away things still darken a point; 0 is any distance",
         default=0.0, min=0.0, soft_max=100.0, subtype="DISTANCE",
@@ -115,11 +127,6 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         description="Refine the whole frame step by step; off: finish one tile after the other",
         default=True,
     )  # fmt: skip
-
-
-def _update_render_passes(_: Any, context: Any) -> None:
-    """Lets the compositor's sockets follow a pass that is switched on or off."""
-    context.scene.update_render_passes()
 
 
 class KomorebiViewLayerSettings(bpy.types.PropertyGroup):

@@ -10,6 +10,7 @@ from . import compat
 from .errors import RenderError
 from .framing import Region
 from .passes import Pass
+from .scene_data import FloatArray
 
 Tile = tuple[int, int, int, int]
 
@@ -45,11 +46,13 @@ class ResultWriter:
         end = time.monotonic()
         self._next = end + DUTY * (end - start)
 
-    def finish(self, session: Any) -> None:
-        """Writes every pass of the whole region."""
-        self._write(session, (0, 0, self._width, self._height), self._passes)
+    def finish(self, session: Any, combined: FloatArray | None = None) -> None:
+        """Writes every pass of the whole region; `combined` takes the place of that pass."""
+        self._write(session, (0, 0, self._width, self._height), self._passes, combined)
 
-    def _write(self, session: Any, tile: Tile, passes: list[Pass]) -> None:
+    def _write(
+        self, session: Any, tile: Tile, passes: list[Pass], combined: FloatArray | None = None
+    ) -> None:
         x, y, width, height = tile
         result = self._engine.begin_result(x, y, width, height, layer=self._layer, view=self._view)
         if result is None:
@@ -63,7 +66,11 @@ class ResultWriter:
             layer_passes = result.layers[0].passes
             for p in passes:
                 target = layer_passes.find_by_name(p.name, self._view)
-                if target is not None:
-                    compat.set_rect(target, session.read(p.name, x, y, width, height))
+                if target is None:
+                    continue
+                if combined is not None and p.name == "Combined":
+                    compat.set_rect(target, combined)
+                else:
+                    compat.set_rect(target, session.read(p.source, x, y, width, height))
         finally:
             self._engine.end_result(result)

@@ -16,6 +16,7 @@ DoubleArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
 UIntArray = NDArray[np.uint32]
 BoolArray = NDArray[np.bool_]
+Arrays = tuple[NDArray[Any] | None, ...]
 
 
 @dataclass(slots=True)
@@ -33,12 +34,15 @@ class MeshData:
     smooth_faces: BoolArray | None = None  # [faces]; None: all smooth if there are normals
     face_materials: IntArray | None = None  # [faces]; None: all slot 0
 
-    def arrays(self) -> tuple[NDArray[Any] | None, ...]:
-        """All that two meshes need to share to be the same one, whatever their names."""
+    def geometry(self) -> Arrays:
+        """What decides where rays hit: with the same, two meshes share a tree."""
         return (
             self.positions, self.corner_verts, self.face_offsets, self.tri2corner, self.tri2face,
-            self.corner_normals, self.vertex_normals, self.smooth_faces, self.face_materials,
         )  # fmt: skip
+
+    def shading(self) -> Arrays:
+        """Everything else but the name."""
+        return self.corner_normals, self.vertex_normals, self.smooth_faces, self.face_materials
 
 
 @dataclass(slots=True)

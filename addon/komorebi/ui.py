@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import Any
 
 import bpy
 
 from . import panels
+from .denoise import library
 
 ENGINE_ID = "KOMOREBI"
 
@@ -63,6 +65,25 @@ class KOMOREBI_RENDER_PT_sampling_render(KomorebiPanel, bpy.types.Panel):
             column.prop(settings, "samples")
         column.prop(settings, "time_limit")
         self.layout.prop(settings, "light_samples")
+
+
+class KOMOREBI_RENDER_PT_sampling_render_denoise(KomorebiPanel, bpy.types.Panel):
+    bl_label = "Denoise"
+    bl_parent_id = "KOMOREBI_RENDER_PT_sampling_render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context: Any) -> None:
+        # What is switched on can be switched off, with a library or without.
+        settings = context.scene.komorebi
+        self.layout.enabled = settings.use_denoising or not library.find().missing
+        self.layout.prop(settings, "use_denoising", text="")
+
+    def draw(self, context: Any) -> None:
+        found = library.find()
+        column = self.column()
+        column.active = context.scene.komorebi.use_denoising
+        for line in textwrap.wrap(found.missing or f"Open Image Denoise: {found.path}", 60):
+            column.label(text=line)
 
 
 class KOMOREBI_RENDER_PT_sampling_advanced(KomorebiPanel, bpy.types.Panel):
@@ -175,6 +196,7 @@ def draw_method(self: Any, context: Any) -> None:
 CLASSES = (
     KOMOREBI_RENDER_PT_sampling,
     KOMOREBI_RENDER_PT_sampling_render,
+    KOMOREBI_RENDER_PT_sampling_render_denoise,
     KOMOREBI_RENDER_PT_sampling_advanced,
     KOMOREBI_RENDER_PT_ambient_occlusion,
     KOMOREBI_RENDER_PT_surface,

@@ -1,5 +1,6 @@
 // komorebi: renders a dumped scene without Blender, for benchmarks, bug reports and sanitizers.
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
@@ -13,17 +14,38 @@ namespace {
 
 using namespace komorebi;
 
-std::vector<float> interleaved_passes(const Session& session, const Rect& region) {
-  std::vector<float> rgba(4 * region.area()), depth(region.area()), normal(3 * region.area());
-  session.film().read("Combined", region, rgba.data());
-  session.film().read("Depth", region, depth.data());
-  session.film().read("Normal", region, normal.data());
-  std::vector<float> all;
-  all.reserve(8 * region.area());
-  for (std::size_t i = 0; i < region.area(); ++i) {
-    all.insert(all.end(), &rgba[4 * i], &rgba[4 * i] + 4);
-    all.push_back(depth[i]);
-    all.insert(all.end(), &normal[3 * i], &normal[3 * i] + 3);
+constexpr std::size_t kChannels = 9;
+
+std::vector<float> interleaved_passes(Session& session, const Rect& region) {
+  std::vector<float> all(kChannels * region.area());
+  std::size_t first = 0;
+  for (const char* name : {"Combined", "Depth", "Normal", "Debug Sample Count"}) {
+    const std::size_t channels = Film::pass(name).channels;
+    std::vector<float> pass(channels * region.area());
+    session.read(name, region, pass.data());
+    for (std::size_t i = 0; i < region.area(); ++i) {
+      std::copy_n(&pass[channels * i], channels, &all[kChannels * i + first]);
+    }
+    first += channels;
+  }
+  return all;
+}
+
+/// What to ask for to get this very picture again, were it cut short by the time limit or not.
+std::vector<std::pair<std::string, std::string>> how_to_repeat(const Session& session) {
+  const Settings& s = session.settings();
+  const Progress p = session.progress();
+  std::vector<std::pair<std::string, std::string>> all{
+      {"komorebi:samples", std::to_string(s.time_limit > 0.0f ? p.sample : p.samples)},
+      {"komorebi:light_samples", std::to_string(session.light_samples())},
+      {"komorebi:seed", std::to_string(s.seed)},
+      {"komorebi:version", KOMOREBI_VERSION}};
+  if (const AdaptiveRule& rule = session.adaptive_rule(); rule.in_use()) {
+    const bool automatic = s.adaptive_threshold == 0.0f && s.time_limit == 0.0f;
+    char threshold[32];
+    std::snprintf(threshold, sizeof threshold, "%.9g", double{automatic ? 0.0f : rule.threshold()});
+    all.emplace_back("komorebi:adaptive_threshold", threshold);
+    all.emplace_back("komorebi:adaptive_min_samples", std::to_string(rule.min_samples()));
   }
   return all;
 }
@@ -66,14 +88,15 @@ int render(const CliOptions& options) {
   Image image;
   image.width = region.width();
   image.height = region.height();
-  image.channels = {"R", "G", "B", "A", "Depth.Z", "Normal.X", "Normal.Y", "Normal.Z"};
+  image.channels = {
+      "R", "G", "B", "A", "Depth.Z", "Normal.X", "Normal.Y", "Normal.Z", "Debug Sample Count.X"};
   image.pixels = interleaved_passes(session, region);
-  image.metadata = {{"komorebi:samples", std::to_string(settings.samples)},
-                    {"komorebi:seed", std::to_string(settings.seed)},
-                    {"komorebi:version", KOMOREBI_VERSION}};
+  image.metadata = how_to_repeat(session);
   write_exr(options.output, image);
-  std::printf("%.2f s, %.2f million rays a second\nSaved: '%s'\n", p.elapsed,
-              static_cast<double>(p.rays) / 1e6 / p.elapsed, options.output.c_str());
+  std::printf("%u samples, %.1f a pixel, %.2f million rays, %.2f s, %.2f million rays a second\n",
+              p.sample, p.mean_samples, static_cast<double>(p.rays) / 1e6, p.elapsed,
+              static_cast<double>(p.rays) / 1e6 / p.elapsed);
+  std::printf("Saved: '%s'\n", options.output.c_str());
   return 0;
 }
 

@@ -18,7 +18,8 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
                                 const py::object& corner_normals, const py::object& smooth_faces,
                                 const py::object& face_materials, const py::object& vertex_normals,
                                 const std::string& builder, unsigned threads,
-                                const std::shared_ptr<Cancel>& cancel) {
+                                const std::shared_ptr<Cancel>& cancel,
+                                const std::shared_ptr<Mesh>& same_geometry) {
   const std::string mesh = "mesh \"" + name + "\": ";
   MeshInput input;
   input.name = name;
@@ -36,7 +37,7 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
   const py::gil_scoped_release release;
   // Python has no const; nothing that is bound below changes a mesh.
   return std::const_pointer_cast<Mesh>(
-      Mesh::build(input, kind, *build_pool(threads), cancel_or_never(cancel)));
+      Mesh::build(input, kind, *build_pool(threads), cancel_or_never(cancel), same_geometry.get()));
 }
 
 py::array_t<std::int32_t> mesh_tri2corner(const Mesh& mesh) {
@@ -159,14 +160,17 @@ name: for messages. positions: float32 [V, 3], object space, metres. corner_vert
 face_offsets: int32 [F + 1], first corner of each face. tri2corner int32 [T, 3] and tri2face
 int32 [T]: Blender's loop triangles; None if every face has three or four corners.
 corner_normals: float32 [C, 3], or vertex_normals: float32 [V, 3], unit; a row that is not finite
-counts as none, and without both every face is flat. smooth_faces: bool [F], None if all are smooth. face_materials: int32 [F]. builder: LINEAR, PRINCIPAL_AXIS or LIST.
+counts as none, and without both every face is flat. smooth_faces: bool [F], None if all are
+smooth. face_materials: int32 [F]. builder: LINEAR, PRINCIPAL_AXIS or LIST. same_geometry: a mesh
+made from the same positions, corners and triangles, whose tree is shared then.
 Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
            py::arg("name"), py::arg("positions"), py::arg("corner_verts"), py::arg("face_offsets"),
            py::kw_only(), py::arg("tri2corner") = py::none(), py::arg("tri2face") = py::none(),
            py::arg("corner_normals") = py::none(), py::arg("smooth_faces") = py::none(),
            py::arg("face_materials") = py::none(), py::arg("vertex_normals") = py::none(),
            py::arg("builder") = "LINEAR", py::arg("threads") = 0,
-           py::arg("cancel") = std::shared_ptr<Cancel>())
+           py::arg("cancel") = std::shared_ptr<Cancel>(),
+           py::arg("same_geometry") = std::shared_ptr<Mesh>())
       .def_property_readonly("name", &Mesh::name)
       .def_property_readonly("triangle_count", &Mesh::triangle_count)
       .def_property_readonly("vertex_count", &Mesh::vertex_count)

@@ -89,8 +89,8 @@ std::vector<PyRect> updated_tiles(Session& session) {
   return tiles;
 }
 
-py::array_t<float> read(const Session& session, const std::string& pass, std::uint32_t x,
-                        std::uint32_t y, const std::optional<std::uint32_t>& width,
+py::array_t<float> read(Session& session, const std::string& pass, std::uint32_t x, std::uint32_t y,
+                        const std::optional<std::uint32_t>& width,
                         const std::optional<std::uint32_t>& height) {
   const Rect& region = session.settings().region;
   if (x > region.width() || y > region.height()) {
@@ -105,7 +105,7 @@ py::array_t<float> read(const Session& session, const std::string& pass, std::ui
   py::array_t<float> out({py::ssize_t{h}, py::ssize_t{w}, py::ssize_t{Film::pass(pass).channels}});
   float* data = out.mutable_data();
   const py::gil_scoped_release release;
-  session.film().read(pass, rect, data);
+  session.read(pass, rect, data);
   return out;
 }
 
@@ -114,11 +114,24 @@ py::dict progress(const Session& session) {
   py::dict d;
   d["sample"] = p.sample;
   d["samples"] = p.samples;
+  d["tile"] = p.tile;
+  d["tiles"] = p.tiles;
+  d["mean_samples"] = p.mean_samples;
   d["fraction"] = p.fraction;
   d["elapsed"] = p.elapsed;
   d["remaining"] = p.remaining;
   d["rays"] = p.rays;
   d["clamped_samples"] = p.clamped_samples;
+  return d;
+}
+
+py::dict resolved(const Session& session) {
+  py::dict d;
+  d["light_samples"] = session.light_samples();
+  if (const AdaptiveRule& rule = session.adaptive_rule(); rule.in_use()) {
+    d["adaptive_threshold"] = rule.threshold();
+    d["adaptive_min_samples"] = rule.min_samples();
+  }
   return d;
 }
 
@@ -169,11 +182,21 @@ void bind_session(py::module_& module) {
            "Goes on after a cancel with what is missing.")
       .def("updated_tiles", &updated_tiles,
            "(x, y, width, height) of tiles changed since the last call, within the region.")
-      .def("progress", &progress)
-      .def("read", &read, py::arg("pass_name"), py::arg("x") = 0, py::arg("y") = 0,
-           py::arg("width") = py::none(), py::arg("height") = py::none(),
-           "A pass as float32 [height, width, channels], row 0 at the bottom: Combined 4 "
-           "(premultiplied, scene linear), Depth 1, Normal 3.")
+      .def(
+          "progress", &progress,
+          "sample (whole passes over the frame), samples, tile and tiles (of the pass that is on), "
+          "mean_samples (a pixel), fraction, elapsed and remaining (seconds), rays, "
+          "clamped_samples.")
+      .def_property_readonly(
+          "resolved", &resolved,
+          "What was automatic in the settings, decided: light_samples, and under "
+          "adaptive sampling adaptive_threshold and adaptive_min_samples.")
+      .def(
+          "read", &read, py::arg("pass_name"), py::arg("x") = 0, py::arg("y") = 0,
+          py::arg("width") = py::none(), py::arg("height") = py::none(),
+          "A pass as float32 [height, width, channels], row 0 at the bottom: Combined 4 "
+          "(premultiplied, scene linear), Depth 1, Normal 3, Debug Sample Count 1 (the fraction of "
+          "`samples`). ValueError for a pass that the settings did not name.")
       .def_property_readonly("error", &error)
       .def_property_readonly("byte_count", &Session::byte_count);
   auto scene =

@@ -116,7 +116,7 @@ bool BatchIntegrator::render(Cells cells, std::uint32_t first, std::uint32_t cou
       for (std::uint32_t x = cell.x_min; x < cell.x_max; ++x) pixels_.push_back({x, y});
     }
   }
-  sums.reset(pixels_.size());
+  film.reset(sums, pixels_.size());
   sums.samples = count;
   const std::size_t paths = pixels_.size() * count;  // all of one sample, then of the next
   for (std::size_t begin = 0; begin < paths; begin += kPathsPerBatch) {

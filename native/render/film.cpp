@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 namespace komorebi {
@@ -11,12 +12,13 @@ constexpr PassDesc kPasses[] = {
     {"Combined", 4, PassRule::kMean},
     {"Depth", 1, PassRule::kFirstSample},
     {"Normal", 3, PassRule::kMean},
+    {"Debug Sample Count", 1, PassRule::kCount},
 };
 
 /// Bits that the number of samples may take of a sum's 62. Two fixed sizes, so that parts of one
 /// render (sample ranges) nearly always share a scale and can be added exactly.
 int sample_bits(const Settings& s) {
-  return s.sample_offset + s.samples <= (1u << 16) ? 16 : 24;
+  return s.sample_offset + s.samples <= kManySamples ? 16 : 24;
 }
 
 /// The largest power of two that keeps 32 · bound · scale within `bits` bits.
@@ -26,31 +28,14 @@ double power_of_two_scale(double bound, int bits) {
   return std::ldexp(1.0, bits - 5 - exponent);
 }
 
+bool asks_for(const Settings& settings, const char* name) {
+  return std::find(settings.passes.begin(), settings.passes.end(), name) != settings.passes.end();
+}
+
 }  // namespace
 
 std::span<const PassDesc> known_passes() {
   return kPasses;
-}
-
-void TileSums::reset(std::size_t pixels) {
-  mean.assign(8 * pixels, 0);
-  depth.assign(pixels, 0.0f);
-  has_first = false;
-  samples = 0;
-  clamped = 0;
-}
-
-Film::Film(const Rect& region, const Settings& settings, float max_radiance)
-    : region_(region), first_sample_(settings.sample_offset) {
-  for (const std::string& name : settings.passes) pass(name);
-  const int bits = 62 - sample_bits(settings);
-  // Ambient occlusion is radiance under a sky of 1, whatever the world behind it.
-  radiance_scale_ = power_of_two_scale(std::max(1.0, double{max_radiance}), bits);
-  unit_scale_ = power_of_two_scale(1.0, bits);
-  limit_ = std::int64_t{1} << bits;
-  sums_.assign(kChannels * region.area(), 0);
-  depth_.assign(region.area(), 0.0f);
-  counts_.assign(region.area(), 0);
 }
 
 const PassDesc& Film::pass(const std::string& name) {
@@ -60,82 +45,86 @@ const PassDesc& Film::pass(const std::string& name) {
   throw std::invalid_argument("there is no pass \"" + name + "\"");
 }
 
-std::int64_t Film::quantise(float value, double scale, std::uint64_t& clamped) const {
-  const double scaled = double{value} * scale;  // exact: a power of two
-  const auto limit = static_cast<double>(limit_);
-  if (!(scaled >= -limit && scaled <= limit)) {  // NaN comes here too
-    ++clamped;
-    return scaled > limit ? limit_ : scaled < -limit ? -limit_ : 0;
-  }
-  return static_cast<std::int64_t>(std::nearbyint(scaled));
+Film::Film(const Rect& region, const Settings& settings, float max_radiance)
+    : region_(region),
+      first_sample_(settings.sample_offset),
+      samples_(settings.samples),
+      keeps_normal_(asks_for(settings, "Normal")),
+      keeps_depth_(asks_for(settings, "Depth")),
+      cells_across_((region.x_max - 1) / kCellSize - region.x_min / kCellSize + 1),
+      bands_((region.y_max - 1) / kCellSize - region.y_min / kCellSize + 1),
+      combined_(4 * region.area()),
+      normal_(keeps_normal_ ? 3 * region.area() : 0),
+      depth_(keeps_depth_ ? region.area() : 0),
+      counts_(bands_.size() * cells_across_, 0) {
+  for (const std::string& name : settings.passes) pass(name);
+  const int bits = 62 - sample_bits(settings);
+  // Ambient occlusion is radiance under a sky of 1, whatever the world behind it.
+  radiance_scale_ = power_of_two_scale(std::max(1.0, double{max_radiance}), bits);
+  unit_scale_ = power_of_two_scale(1.0, bits);
+  limit_ = std::ldexp(1.0, bits);
 }
 
-void Film::add(TileSums& tile, std::size_t pixel, std::uint32_t sample_index,
-               const PixelSample& s) const {
-  std::int64_t* sum = &tile.mean[kChannels * pixel];
-  for (int c = 0; c < 3; ++c) {
-    sum[c] += quantise(s.radiance[c], radiance_scale_, tile.clamped);
-    sum[4 + c] += quantise(s.normal[c], unit_scale_, tile.clamped);
-  }
-  sum[3] += quantise(s.alpha, unit_scale_, tile.clamped);
-  if (sample_index == first_sample_) {
-    tile.depth[pixel] = s.depth;
-    tile.has_first = true;
-  }
+void Film::reset(TileSums& sums, std::size_t pixels) const {
+  sums.combined.assign(4 * pixels, 0);
+  sums.normal.assign(keeps_normal_ ? 3 * pixels : 0, 0);
+  sums.depth.assign(keeps_depth_ ? pixels : 0, 0.0f);
+  sums.has_first = false;
+  sums.samples = 0;
+  sums.clamped = 0;
 }
 
 void Film::merge(Cells cells, const TileSums& sums) {
-  const std::lock_guard lock(mutex_);
   std::size_t from = 0;
-  for (const Rect& cell : cells) {
-    for (std::uint32_t y = cell.y_min; y < cell.y_max; ++y) {
-      for (std::uint32_t x = cell.x_min; x < cell.x_max; ++x, ++from) {
-        const std::size_t to = index(x, y);
-        for (std::size_t c = 0; c < kChannels; ++c) {
-          sums_[kChannels * to + c] += sums.mean[kChannels * from + c];
-        }
-        if (sums.has_first) depth_[to] = sums.depth[from];
-        counts_[to] += sums.samples;
+  std::uint64_t clamped = sums.clamped;
+  for (const Rect& c : cells) {
+    Band& b = bands_[band(c.y_min)];
+    const std::lock_guard lock(b.mutex);
+    b.clamped += std::exchange(clamped, 0);
+    counts_[cell(c.x_min, c.y_min)] += sums.samples;
+    for (std::uint32_t y = c.y_min; y < c.y_max; ++y, from += c.width()) {
+      const std::size_t to = index(c.x_min, y);
+      for (std::size_t i = 0; i < 4 * c.width(); ++i) {
+        combined_[4 * to + i] += sums.combined[4 * from + i];
       }
+      if (keeps_normal_) {
+        for (std::size_t i = 0; i < 3 * c.width(); ++i) {
+          normal_[3 * to + i] += sums.normal[3 * from + i];
+        }
+      }
+      if (sums.has_first) std::copy_n(&sums.depth[from], c.width(), &depth_[to]);
     }
   }
-  clamped_ += sums.clamped;
 }
 
-void Film::read(const std::string& name, const Rect& rect, float* out) const {
-  const PassDesc& desc = pass(name);
-  if (rect.x_min < region_.x_min || rect.y_min < region_.y_min || rect.x_max > region_.x_max ||
-      rect.y_max > region_.y_max || rect.x_min > rect.x_max || rect.y_min > rect.y_max) {
-    throw std::invalid_argument("the rectangle to read lies outside the film");
-  }
-  const std::size_t first_channel = desc.name == std::string("Normal") ? 4 : 0;
-  const std::lock_guard lock(mutex_);
-  for (std::uint32_t y = rect.y_min; y < rect.y_max; ++y) {
-    for (std::uint32_t x = rect.x_min; x < rect.x_max; ++x) {
-      const std::size_t i = index(x, y);
-      if (desc.rule == PassRule::kFirstSample) {
-        *out++ = depth_[i];
-        continue;
+void Film::cell_means(const Rect& c, float* out) const {
+  const std::lock_guard lock(bands_[band(c.y_min)].mutex);
+  const double n = counts_[cell(c.x_min, c.y_min)];
+  const double radiance = 1.0 / (radiance_scale_ * n), unit = 1.0 / (unit_scale_ * n);
+  for (std::uint32_t y = c.y_min; y < c.y_max; ++y) {
+    const std::int64_t* sum = &combined_[4 * index(c.x_min, y)];
+    for (std::uint32_t i = 0; i < c.width(); ++i, sum += 4, out += 4) {
+      for (int k = 0; k < 3; ++k) {
+        out[k] = static_cast<float>(static_cast<double>(sum[k]) * radiance);
       }
-      for (std::size_t c = 0; c < desc.channels; ++c) {
-        const std::size_t channel = first_channel + c;
-        const double scale = channel < 3 ? radiance_scale_ : unit_scale_;
-        const double n = std::max<std::uint32_t>(counts_[i], 1);
-        *out++ =
-            static_cast<float>(static_cast<double>(sums_[kChannels * i + channel]) / scale / n);
-      }
+      out[3] = static_cast<float>(static_cast<double>(sum[3]) * unit);
     }
   }
 }
 
 std::uint64_t Film::clamped_samples() const {
-  const std::lock_guard lock(mutex_);
-  return clamped_;
+  std::uint64_t clamped = 0;
+  for (const Band& b : bands_) {
+    const std::lock_guard lock(b.mutex);
+    clamped += b.clamped;
+  }
+  return clamped;
 }
 
 std::size_t Film::byte_count() const {
-  return sums_.capacity() * sizeof(std::int64_t) + depth_.capacity() * sizeof(float) +
-         counts_.capacity() * sizeof(std::uint32_t);
+  return (combined_.size() + normal_.size()) * sizeof(std::int64_t) +
+         depth_.size() * sizeof(float) + counts_.size() * sizeof(std::uint32_t) +
+         bands_.size() * sizeof(Band);
 }
 
 }  // namespace komorebi

@@ -4,6 +4,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "render/tiles.h"
+
 namespace komorebi {
 namespace {
 
@@ -20,6 +22,14 @@ Settings checked(const Scene& scene, Settings settings) {
   return settings;
 }
 
+/// Adaptive sampling decides on whole cells: those that a border cuts are rendered whole, and what
+/// lies outside is never read.
+Rect film_region(const Scene& scene, const Settings& settings) {
+  if (!settings.use_adaptive_sampling) return settings.region;
+  const CameraDesc& camera = scene.camera_desc();
+  return whole_cells(settings.region, camera.width, camera.height);
+}
+
 }  // namespace
 
 Session::Session(std::shared_ptr<const Scene> scene, const Settings& settings)
@@ -27,10 +37,10 @@ Session::Session(std::shared_ptr<const Scene> scene, const Settings& settings)
       settings_(checked(require_ready(scene_), settings)),
       filter_(settings_.pixel_filter, settings_.filter_width),
       context_(make_context(*scene_, settings_, filter_.view())),
-      film_(settings_.region, settings_, scene_->max_radiance()),
-      items_(work_items(settings_.region, settings_)),
+      rule_(settings_),
       pool_(settings_.threads),
-      item_states_(items_.size(), ItemState::kPending) {
+      film_(film_region(*scene_, settings_), settings_, scene_->max_radiance()),
+      schedule_(make_tiles(film_.region(), settings_.tile_size, pool_.size()), settings_, rule_) {
   launch();
 }
 
@@ -45,8 +55,7 @@ void Session::launch() {
     const std::lock_guard lock(mutex_);
     cancel_ = std::make_shared<Cancel>();
     over_ = false;
-    next_ = 0;
-    started_ = Clock::now();
+    schedule_.start();
   }
   thread_ = std::thread([this] { run(); });
 }
@@ -79,75 +88,67 @@ void Session::run() {
   } catch (const std::exception& e) {
     error = e.what();
   }
+  schedule_.pause();
   const std::lock_guard lock(mutex_);
   error_ = error;
-  seconds_before_ += std::chrono::duration<double>(Clock::now() - started_).count();
   over_ = true;
   over_changed_.notify_all();
 }
 
-const WorkItem* Session::take_item() {
-  const std::lock_guard lock(mutex_);
-  if (cancel_->raised()) return nullptr;
-  while (next_ < items_.size() && item_states_[next_] != ItemState::kPending) ++next_;
-  if (next_ == items_.size()) return nullptr;
-  item_states_[next_] = ItemState::kRunning;
-  return &items_[next_++];
-}
-
-void Session::finish_item(const WorkItem& item, bool done) {
-  const std::lock_guard lock(mutex_);
-  item_states_[static_cast<std::size_t>(&item - items_.data())] =
-      done ? ItemState::kDone : ItemState::kPending;
-  if (!done) return;
-  while (done_before_ < items_.size() && item_states_[done_before_] == ItemState::kDone) {
-    ++done_before_;
-  }
-  samples_done_ += std::uint64_t{item.count} * item.tile.area();
-  const auto same = [&](const Rect& r) {
-    return r.x_min == item.tile.x_min && r.y_min == item.tile.y_min;
-  };
-  if (std::none_of(updated_.begin(), updated_.end(), same)) updated_.push_back(item.tile);
-}
-
 void Session::work() {
+  const Cancel& cancel = *cancel_;  // set before this thread began
   BatchIntegrator integrator(context_);
   TileSums sums;
   std::uint64_t counted = 0;
-  while (const WorkItem* item = take_item()) {
-    const std::vector<Rect> cells = cells_of(item->tile);
-    const bool done = integrator.render(cells, item->first, item->count, film_, sums, *cancel_);
-    if (done) film_.merge(cells, sums);
-    finish_item(*item, done);
+  while (const auto item = schedule_.take(cancel)) {
+    const Cells cells = *item->cells;
+    bool done = false;
+    try {
+      done = integrator.render(cells, item->first, item->count, film_, sums, cancel);
+      if (done) film_.merge(cells, sums);
+    } catch (...) {  // else the others would wait for this piece
+      schedule_.finish(*item, false, film_);
+      this->cancel();
+      throw;
+    }
     rays_ += integrator.ray_count() - counted;
     counted = integrator.ray_count();
+    schedule_.finish(*item, done, film_);
   }
 }
 
 std::vector<Rect> Session::updated_tiles() {
-  const std::lock_guard lock(mutex_);
+  const Rect& r = settings_.region;
   std::vector<Rect> tiles;
-  tiles.swap(updated_);
+  for (const Rect& t : schedule_.updated_tiles()) {
+    const Rect inside{std::max(t.x_min, r.x_min), std::max(t.y_min, r.y_min),
+                      std::min(t.x_max, r.x_max), std::min(t.y_max, r.y_max)};
+    tiles.push_back(inside);  // not empty: the film's cells all touch the region
+  }
   return tiles;
 }
 
 Progress Session::progress() const {
+  const ScheduleState state = schedule_.state();
   Progress p;
   p.clamped_samples = film_.clamped_samples();
   p.rays = rays_;
-  const std::lock_guard lock(mutex_);
-  const double pixels = static_cast<double>(settings_.region.area());
   p.samples = settings_.samples;
-  if (!settings_.use_progressive || done_before_ == items_.size()) {
-    p.sample = static_cast<std::uint32_t>(samples_done_ / settings_.region.area());
-  } else {  // items come pass after pass
-    p.sample = items_[done_before_].first - settings_.sample_offset;
-  }
-  p.fraction = static_cast<double>(samples_done_) / (pixels * settings_.samples);
-  p.elapsed = seconds_before_;
-  if (!over_) p.elapsed += std::chrono::duration<double>(Clock::now() - started_).count();
+  p.tile = state.tile;
+  p.tiles = state.tiles;
+  p.mean_samples =
+      static_cast<double>(state.pixel_samples) / static_cast<double>(film_.region().area());
+  const bool by_pass = settings_.use_progressive || settings_.time_limit > 0.0f;
+  p.sample = by_pass || state.tile == state.tiles ? state.sample
+                                                  : static_cast<std::uint32_t>(p.mean_samples);
+  p.fraction = state.fraction;
+  p.elapsed = schedule_.elapsed();
   if (p.fraction > 0.0) p.remaining = p.elapsed * (1.0 - p.fraction) / p.fraction;
   return p;
+}
+
+void Session::read(const std::string& pass, const Rect& rect, float* out) {
+  film_.read(pass, rect, out, pool_);
 }
 
 std::string Session::error() const {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
@@ -17,16 +16,20 @@
 #include "render/film.h"
 #include "render/filter.h"
 #include "render/scene.h"
-#include "render/tiles.h"
+#include "render/schedule.h"
 
 namespace komorebi {
 
 struct Progress {
-  std::uint32_t sample = 0;  ///< every pixel has as many (tile by tile: on average)
+  std::uint32_t sample = 0;  ///< every pixel has as many, or has converged (tile by tile: the mean)
   std::uint32_t samples = 0;
-  double fraction = 0.0;   ///< of all samples of all pixels
-  double elapsed = 0.0;    ///< seconds
-  double remaining = 0.0;  ///< seconds, from the pace so far; 0 before the first tile
+  std::uint32_t tile =
+      0;  ///< tiles done in the pass over the frame that is on (tile by tile: of all)
+  std::uint32_t tiles = 0;
+  double mean_samples = 0.0;  ///< a pixel, so far
+  double fraction = 0.0;      ///< of the samples of all pixels that have not converged
+  double elapsed = 0.0;       ///< seconds
+  double remaining = 0.0;     ///< seconds, from the pace so far; 0 before the first tile
   std::uint64_t rays = 0;
   std::uint64_t clamped_samples = 0;
 };
@@ -49,47 +52,41 @@ class Session {
   /// Returns at once; without effect while running.
   void resume();
 
-  /// Tiles that changed since the last call (full-frame pixels).
+  /// Tiles that changed since the last call (full-frame pixels), within the region.
   std::vector<Rect> updated_tiles();
   Progress progress() const;
+  /// A pass as Film::read(), on all threads when the render is over.
+  void read(const std::string& pass, const Rect& rect, float* out);
   const Film& film() const { return film_; }
   const Settings& settings() const { return settings_; }
+  /// With what is automatic in the settings decided.
+  const AdaptiveRule& adaptive_rule() const { return rule_; }
+  std::uint32_t light_samples() const { return context_.light_samples; }
   /// Why the render failed; empty when it did not.
   std::string error() const;
   std::size_t byte_count() const { return film_.byte_count(); }
 
  private:
-  enum class ItemState : std::uint8_t { kPending, kRunning, kDone };
-  using Clock = std::chrono::steady_clock;
-
   void launch();
   void run();
   void work();
-  const WorkItem* take_item();
-  void finish_item(const WorkItem& item, bool done);
 
   std::shared_ptr<const Scene> scene_;
   Settings settings_;
   FilterTable filter_;
   RenderContext context_;
-  Film film_;
-  std::vector<WorkItem> items_;
+  AdaptiveRule rule_;
   ThreadPool pool_;
+  Film film_;
+  Schedule schedule_;
   std::thread thread_;
 
-  std::shared_ptr<Cancel> cancel_;  // one a run
   std::atomic<std::uint64_t> rays_{0};
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;        // guards all below
+  std::shared_ptr<Cancel> cancel_;  // one a run
   std::condition_variable over_changed_;
   bool over_ = true;
   std::string error_;
-  std::vector<ItemState> item_states_;
-  std::size_t next_ = 0;         // items before it are taken
-  std::size_t done_before_ = 0;  // items before it are done
-  std::vector<Rect> updated_;
-  std::uint64_t samples_done_ = 0;
-  double seconds_before_ = 0.0;  // of runs before a resume
-  Clock::time_point started_;
 };
 
 }  // namespace komorebi

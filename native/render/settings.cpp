@@ -33,6 +33,10 @@ void check_settings(const Settings& s, std::uint32_t width, std::uint32_t height
           "that each stop on their own do not add up to the whole");
   require(std::isfinite(s.time_limit) && s.time_limit >= 0.0f,
           "time_limit must be finite and not negative (0 is none)");
+  require(
+      s.time_limit == 0.0f || s.sample_offset + s.samples <= kManySamples,
+      "with a time_limit, sample_offset + samples must not exceed 65536: a larger picture could "
+      "not be repeated to the bit by its number of samples");
   require(std::isfinite(s.ao_distance) && s.ao_distance >= 0.0f,
           "ao_distance must be finite and not negative (0 is unlimited)");
   for (int c = 0; c < 3; ++c) {

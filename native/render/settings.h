@@ -21,6 +21,9 @@ struct Rect {
   std::size_t area() const { return static_cast<std::size_t>(width()) * height(); }
 };
 
+/// Films of up to as many samples have finer units than larger ones.
+inline constexpr std::uint32_t kManySamples = 1u << 16;
+
 /// Everything about a render that is not in the scene. Names are those of `scene.komorebi`.
 struct Settings {
   Method method = Method::kAmbientOcclusion;

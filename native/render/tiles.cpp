@@ -5,9 +5,20 @@
 namespace komorebi {
 namespace {
 
-constexpr std::uint32_t kMaxSamplesPerItem = 16;
+constexpr std::size_t kTilesPerThread = 8;
 
-std::vector<Rect> tiles_from_centre(const Rect& region, std::uint32_t size) {
+std::size_t tile_count(const Rect& r, std::uint32_t size) {
+  const std::size_t across = (r.x_max - 1) / size - r.x_min / size + 1;
+  return across * ((r.y_max - 1) / size - r.y_min / size + 1);
+}
+
+}  // namespace
+
+std::vector<Rect> make_tiles(const Rect& region, std::uint32_t wanted, unsigned threads) {
+  std::uint32_t size = (wanted + kCellSize - 1) / kCellSize * kCellSize;
+  while (size >= 4 * kCellSize && tile_count(region, size) < kTilesPerThread * threads) {
+    size = size / 2 / kCellSize * kCellSize;
+  }
   std::vector<Rect> tiles;
   for (std::uint32_t y = region.y_min / size * size; y < region.y_max; y += size) {
     for (std::uint32_t x = region.x_min / size * size; x < region.x_max; x += size) {
@@ -25,39 +36,10 @@ std::vector<Rect> tiles_from_centre(const Rect& region, std::uint32_t size) {
   return tiles;
 }
 
-struct SampleRange {
-  std::uint32_t first, count;
-};
-
-std::vector<SampleRange> sample_ranges(const Settings& settings) {
-  std::vector<SampleRange> ranges;
-  std::uint32_t done = 0;
-  while (done < settings.samples) {
-    const std::uint32_t doubling = std::min(std::max(done, 1u), kMaxSamplesPerItem);
-    const std::uint32_t count = std::min(doubling, settings.samples - done);
-    ranges.push_back({settings.sample_offset + done, count});
-    done += count;
-  }
-  return ranges;
-}
-
-}  // namespace
-
-std::vector<WorkItem> work_items(const Rect& region, const Settings& settings) {
-  const std::vector<Rect> tiles = tiles_from_centre(region, settings.tile_size);
-  const std::vector<SampleRange> ranges = sample_ranges(settings);
-  std::vector<WorkItem> items;
-  items.reserve(tiles.size() * ranges.size());
-  if (settings.use_progressive) {
-    for (const SampleRange& range : ranges) {
-      for (const Rect& tile : tiles) items.push_back({tile, range.first, range.count});
-    }
-  } else {
-    for (const Rect& tile : tiles) {
-      for (const SampleRange& range : ranges) items.push_back({tile, range.first, range.count});
-    }
-  }
-  return items;
+Rect whole_cells(const Rect& region, std::uint32_t frame_width, std::uint32_t frame_height) {
+  const auto up = [](std::uint32_t x) { return (x + kCellSize - 1) / kCellSize * kCellSize; };
+  return {region.x_min / kCellSize * kCellSize, region.y_min / kCellSize * kCellSize,
+          std::min(up(region.x_max), frame_width), std::min(up(region.y_max), frame_height)};
 }
 
 }  // namespace komorebi

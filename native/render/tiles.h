@@ -2,21 +2,16 @@
 
 #include <vector>
 
-#include "render/settings.h"
+#include "render/cells.h"
 
 namespace komorebi {
 
-/// A piece of a render: these sample indices of every pixel of this tile.
-struct WorkItem {
-  Rect tile;
-  std::uint32_t first = 0;
-  std::uint32_t count = 0;
-};
+/// Cuts a region into tiles, from its centre out. Their borders lie on multiples of the tile size
+/// in the full frame, and so on those of cells: the size is `wanted` rounded up to whole cells, or
+/// less, down to two cells, where the region would not give every thread some tiles.
+std::vector<Rect> make_tiles(const Rect& region, std::uint32_t wanted, unsigned threads);
 
-/// The order in which a frame is rendered: tiles from the centre out and, when progressive, one
-/// pass over all tiles after another (1 sample, then doubling, at most 16 at a time, so that
-/// threads end together), so that a cancelled picture is whole and only noisier. Else tile by tile
-/// to its end. Tile borders lie on multiples of tile_size in the full frame.
-std::vector<WorkItem> work_items(const Rect& region, const Settings& settings);
+/// The grid's cells that `region` touches, whole (as far as the frame reaches).
+Rect whole_cells(const Rect& region, std::uint32_t frame_width, std::uint32_t frame_height);
 
 }  // namespace komorebi

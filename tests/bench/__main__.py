@@ -9,7 +9,8 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from bench import core, machine, meshes, options, ray_tables
+from bench import core, export, machine, meshes, options, pictures, ray_tables, scale
+from bench.progress import say
 from bench.tables import Table
 
 SCHEMA = 1
@@ -20,13 +21,15 @@ PARTS: dict[str, Part] = {
     "build": ("2 to 5 minutes", core.measure_build, core.build_tables),
     "rays": ("5 minutes", core.measure_rays, ray_tables.ray_tables),
     "memory": ("as build", core.measure_build, core.memory_tables),
+    "pictures": ("20 minutes, longer where references are new", pictures.measure, pictures.tables),
+    "export": ("2 minutes", export.measure, export.tables),
+    "scale": ("3 minutes", scale.measure, scale.tables),
 }
 
 
 def main(words: list[str]) -> int:
     """Run what the command line asks for; returns the exit code."""
     chosen = options.read(words)
-    parts = [part for part in chosen.parts if part in PARTS]
     result: dict[str, Any] = {"schema": SCHEMA, "command": " ".join(["./run bench", *words])}
     result |= {"machine": machine.describe(), "parts": {}}
     about = result["machine"]
@@ -34,9 +37,9 @@ def main(words: list[str]) -> int:
           f"load {about['load_average']:.1f}")  # fmt: skip
     tables: list[Table] = []
     measured: Rows = []
-    for part in parts:
+    for part in chosen.parts:
         budget, measure, tabulate = PARTS[part]
-        core.say(f"{part}: {'seconds' if chosen.quick else 'hours' if chosen.full else budget}")
+        say(f"{part}: {'seconds' if chosen.quick else 'hours' if chosen.full else budget}")
         start = time.perf_counter()
         # Memory is measured with the builds.
         rows = measured if part == "memory" and measured else measure(chosen)

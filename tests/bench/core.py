@@ -5,23 +5,18 @@ from __future__ import annotations
 import argparse
 import json
 import subprocess
-import sys
 import time
 from collections.abc import Iterable
 from typing import Any
 
 from bench import meshes
+from bench.progress import say
 from bench.sources import SOURCES, Source
 from bench.statistics import geometric_mean, median, ratio, spread
 from bench.tables import Table, figure, times
 
 PROGRAM = meshes.PROJECT / "build" / "release" / "komorebi_bench"
 Row = dict[str, Any]
-
-
-def say(text: str) -> None:
-    """Progress."""
-    print(text, file=sys.stderr, flush=True)
 
 
 def run_part(part: str, words: Iterable[str]) -> list[Row]:

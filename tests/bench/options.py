@@ -11,6 +11,12 @@ from bench.sources import SOURCES
 PARTS = ("build", "rays", "memory", "pictures", "export", "scale")
 
 
+def size(word: str) -> tuple[int, int]:
+    """`640x360`."""
+    width, height = (int(part) for part in word.split("x"))
+    return width, height
+
+
 def parser() -> argparse.ArgumentParser:
     """All options with their defaults."""
     made = argparse.ArgumentParser(
@@ -40,6 +46,9 @@ def parser() -> argparse.ArgumentParser:
         action="append",
         choices=[s.name for s in SCENES],
         help="pictures: this scene (may be repeated)",
+    )
+    made.add_argument(
+        "--size", type=size, metavar="WIDTHxHEIGHT", help="pictures: timed at this size instead"
     )
     made.add_argument("--json", type=Path, help="write the result here too")
     made.add_argument("--markdown", type=Path, help="write the tables here")

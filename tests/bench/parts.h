@@ -8,6 +8,5 @@ namespace komorebi::bench {
 void build_part(const Options& options);
 void rays_part(const Options& options);
 void scale_part(const Options& options);
-void instances_part(const Options& options);
 
 }  // namespace komorebi::bench

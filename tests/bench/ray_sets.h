@@ -80,6 +80,18 @@ class RaySet {
   std::vector<std::uint32_t> instance_, primitive_, first_ray_;
 };
 
+/// The camera rays themselves, each from a place of its own.
+inline RaySet camera_set(const testing::RayList& camera) {
+  std::vector<Place> eyes(camera.size());
+  for (std::uint32_t i = 0; i < camera.size(); ++i) {
+    eyes[i] = {camera[i].origin, Vec3(0.0f), kNone, kNone};
+  }
+  const Place* first = eyes.data();
+  return RaySet(eyes, 1, kFloatMax, [&, first](const Place& eye, std::uint32_t) {
+    return camera[static_cast<std::uint32_t>(&eye - first)].direction;
+  });
+}
+
 /// Cosine-distributed rays, stratified over the elevation.
 inline RaySet ambient_set(const std::vector<Place>& from, std::uint32_t count, float reach) {
   Numbers number;

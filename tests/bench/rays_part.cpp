@@ -1,7 +1,7 @@
-// Occlusion rays: ours beside Embree's, the very same rays, in turns.
-#include <bit>
+// Rays: ours beside Embree's, the very same rays, in turns.
 #include <cstdio>
 
+#include "bench/answers.h"
 #include "bench/bench_meshes.h"
 #include "bench/clock.h"
 #include "bench/embree_rays.h"
@@ -18,7 +18,7 @@ using testing::TestScene;
 /// One line of the table: who traces, on which tree, how, and with which instructions.
 struct Row {
   std::string engine, tree, query, instructions;
-  std::function<bool(std::uint32_t)> blocked;  ///< each ray's answer after the work
+  std::function<bool(std::uint32_t)> met;  ///< each ray's answer after the work
 };
 
 struct Entrants {
@@ -39,51 +39,35 @@ void each_chunk(ThreadPool& pool, const RaySet& set, Body body) {
   });
 }
 
-/// Chunks need not be whole words of answers, so each chunk has words of its own.
-class Answers {
- public:
-  explicit Answers(const RaySet& set) : set_(set) {
-    for (std::uint32_t k = 0; k < set.chunk_count(); ++k) {
-      first_.push_back(words_.size());
-      words_.resize(words_.size() + (set.end_ray(k) - set.first_ray(k) + 31) / 32);
-    }
-    a_chunk_ = set.end_ray(0);
-  }
-  std::uint32_t* chunk(std::uint32_t k) { return words_.data() + first_[k]; }
-  bool operator[](std::uint32_t ray) const {
-    const std::uint32_t bit = ray % a_chunk_;
-    return (words_[first_[ray / a_chunk_] + bit / 32] >> (bit % 32)) & 1u;
-  }
-
- private:
-  const RaySet& set_;
-  std::vector<std::uint32_t> words_;
-  std::vector<std::size_t> first_;
-  std::uint32_t a_chunk_ = 1;
-};
-
+/// How our tracer is asked: by bundles, by a span, or for closest hits.
 void add_ours(Entrants& entrants, const TestScene& scene, const std::string& builder,
-              const RaySet& set, ThreadPool& pool, const std::vector<std::string>& sets) {
+              const RaySet& set, bool closest, ThreadPool& pool,
+              const std::vector<std::string>& sets) {
   const SceneView view = scene.view();
-  for (const std::string& instructions : sets) {
-    for (const char* query : {"bundles", "span"}) {
-      const bool bundles = query[0] == 'b';
-      if (!bundles && instructions != sets.front()) continue;
-      auto answers = std::make_shared<Answers>(set);
-      const auto work = [&set, &pool, view, answers, bundles] {
-        each_chunk(pool, set, [&](std::uint32_t k) {
-          if (bundles) {
-            occluded(view, set.bundles(k), answers->chunk(k));
-          } else {
-            occluded(view, set.span(k), answers->chunk(k));
-          }
+  const auto add = [&](const char* query, const std::string& instructions, auto trace) {
+    auto answers = std::make_shared<Answers>(set, closest);
+    entrants.add(
+        {"komorebi", builder, query, instructions,
+         [answers](std::uint32_t i) { return answers->met(i); }},
+        [instructions] { force_instruction_set(instructions); },
+        [&set, &pool, answers, trace] {
+          each_chunk(pool, set, [&](std::uint32_t k) { trace(k, *answers); });
         });
-      };
-      entrants.add(
-          {"komorebi", builder, query, instructions,
-           [answers](std::uint32_t i) { return (*answers)[i]; }},
-          [instructions] { force_instruction_set(instructions); }, work);
+  };
+  for (const std::string& name : sets) {
+    if (closest) {
+      add("span", name, [&set, view](std::uint32_t k, Answers& answers) {
+        intersect(view, set.span(k), answers.hits(set.first_ray(k)));
+      });
+      continue;
     }
+    add("bundles", name, [&set, view](std::uint32_t k, Answers& answers) {
+      occluded(view, set.bundles(k), answers.bits(k));
+    });
+    if (name != sets.front()) continue;
+    add("span", name, [&set, view](std::uint32_t k, Answers& answers) {
+      occluded(view, set.span(k), answers.bits(k));
+    });
   }
 }
 
@@ -96,13 +80,13 @@ void add_embree(Entrants& entrants, const EmbreePeer& peer, const std::string& m
       rtcInitIntersectContext(&context);
       context.flags = query.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
                                      : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-      rays->occluded(peer.scene(), &context, k);
+      rays->trace(peer.scene(), &context, k);
     });
   };
   const std::string name = query.width == 0 ? "1M" : std::to_string(query.width);
   entrants.add(
       {"embree", mode, name + (query.coherent ? " coherent" : ""), "own choice",
-       [rays](std::uint32_t i) { return rays->blocked(i); }},
+       [rays](std::uint32_t i) { return rays->met(i); }},
       [rays, &set] { rays->reset(set.list); }, work);
 }
 
@@ -122,9 +106,9 @@ void print(const Options& options, const testing::TriangleMesh& mesh, const std:
     entrants.contenders[i].work();
     double blocked = 0.0, differing = 0.0;
     for (std::uint32_t k = 0; k < set.list.size(); ++k) {
-      const bool here = row.blocked(k);
+      const bool here = row.met(k);
       blocked += here;
-      differing += here != first.blocked(k);
+      differing += here != first.met(k);
     }
     JsonRow("rays")
         .text("mesh", options.text("name", "mesh"))
@@ -157,9 +141,10 @@ View chosen_view(const Options& options, const Aabb& box) {
   return view;
 }
 
-/// "ao:16", "ao:16:0.1" (a tenth of the diagonal), "map:16".
-RaySet make_set(const std::string& kind, const std::vector<Place>& from, float diagonal,
-                const EnvironmentView& map) {
+/// "camera", "ao:16", "ao:16:0.1" (a tenth of the diagonal), "map:16".
+RaySet make_set(const std::string& kind, const testing::RayList& camera,
+                const std::vector<Place>& from, float diagonal, const EnvironmentView& map) {
+  if (kind == "camera") return camera_set(camera);
   std::istringstream words(kind);
   std::string name, count, reach;
   std::getline(words, name, ':');
@@ -221,14 +206,14 @@ void rays_part(const Options& options) {
   std::fprintf(stderr, "%zu of %u camera rays hit\n", from.size(), camera.size());
   if (from.empty()) throw std::runtime_error("the view sees nothing");
   for (const std::string& kind : options.list("kinds", "ao:16,ao:16:0.1")) {
-    const RaySet set = make_set(kind, from, std::sqrt(glm::dot(diagonal, diagonal)), light);
+    const RaySet set = make_set(kind, camera, from, std::sqrt(glm::dot(diagonal, diagonal)), light);
     std::map<int, std::shared_ptr<EmbreeRays>> filled;
     for (const std::string& word : options.list("threads", "1")) {
       const auto threads = static_cast<unsigned>(std::stoul(word));
       ThreadPool pool(threads);
       Entrants entrants;
       for (const auto& [builder, scene] : scenes) {
-        add_ours(entrants, *scene, builder, set, pool, sets);
+        add_ours(entrants, *scene, builder, set, kind == "camera", pool, sets);
       }
       for (const auto& [mode, peer] : peers) {
         const bool wide = mode == "MEDIUM" || mode == "HIGH" || options.whole("all", 0) != 0;
@@ -237,7 +222,7 @@ void rays_part(const Options& options) {
           if (query.width != 1 && !wide) continue;
           // Rays in Embree's layout: one copy serves all who ask in the same way.
           auto& rays = filled[query.width];
-          if (!rays) rays = embree_rays(set, query.width);
+          if (!rays) rays = embree_rays(set, query.width, kind == "camera");
           add_embree(entrants, *peer, mode, query, set, pool, rays);
         }
       }

@@ -103,24 +103,24 @@ def module_version() -> str:
     return digest.hexdigest()[:8]
 
 
-def reference_file(scene: Scene, engine: str, seed: int) -> Path:
+def reference_file(scene: Scene, engine: str, samples: int, seed: int) -> Path:
     """Where one seed's part of a reference is kept."""
     who = module_version() if engine == "KOMOREBI" else "4.5"
-    name = f"{blend_file(scene).stem}-{scene.mode}-{small_size(scene)[0]}-{engine}-{who}-{seed}.npy"
+    name = f"{blend_file(scene).stem}-{scene.mode}-{small_size(scene)[0]}-{engine}-{who}-{samples}-{seed}.npy"
     return meshes.FOLDER / "references" / name
 
 
-def reference_part(scene: Scene, engine: str, seed: int) -> np.ndarray:
-    """512 samples of one seed, float32 [row, column, RGB]; rendered once and kept."""
-    path = reference_file(scene, engine, seed)
+def reference_part(scene: Scene, engine: str, samples: int, seed: int) -> np.ndarray:
+    """`samples` of one seed, float32 [row, column, RGB]; rendered once and kept."""
+    path = reference_file(scene, engine, samples, seed)
     if not path.is_file():
         path.parent.mkdir(parents=True, exist_ok=True)
         # Seeds far from those of the measured pictures.
-        run = (REFERENCE_SAMPLES, 1000 + seed + (500 if engine == "KOMOREBI" else 0))
+        run = (samples, 1000 + seed + (500 if engine == "KOMOREBI" else 0))
         np.save(path, render(scene, engine, small_size(scene), [run], True).pictures[0])
     return np.asarray(np.load(path))
 
 
-def reference(scene: Scene, engine: str, seeds: int = REFERENCE_SEEDS) -> np.ndarray:
+def reference(scene: Scene, engine: str, seeds: int, samples: int) -> np.ndarray:
     """All parts, float32 [seed, row, column, RGB]; their mean is the reference."""
-    return np.stack([reference_part(scene, engine, seed) for seed in range(seeds)])
+    return np.stack([reference_part(scene, engine, samples, seed) for seed in range(seeds)])

@@ -108,6 +108,16 @@ def exported():
     return calls[-1][1]
 
 
+def exported_picture(name):
+    """The pass `name` of a render as it was handed to Blender [height, width, channels]."""
+    from komorebi import passes
+
+    channels = next(p.channels for p in passes.PASSES if p.name == name)
+    with captured("compat.set_rect") as written:
+        bpy.ops.render.render()
+    return [pixels for (_, pixels), _ in written if pixels.shape[2] == channels][-1]
+
+
 @contextlib.contextmanager
 def warnings():
     """Collects the sentences of warnings."""
@@ -216,6 +226,15 @@ def link_environment(image, world=None):
     background = next(n for n in tree.nodes if n.type == "BACKGROUND")
     tree.links.new(node.outputs["Color"], background.inputs["Color"])
     return node
+
+
+def compositor_tree(scene):
+    """The scene's compositing nodes, switched on."""
+    if hasattr(scene, "compositing_node_group"):  # from 5.0 on
+        scene.compositing_node_group = bpy.data.node_groups.new("Tree", "CompositorNodeTree")
+        return scene.compositing_node_group
+    scene.use_nodes = True
+    return scene.node_tree
 
 
 def resident_bytes():

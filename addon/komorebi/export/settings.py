@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..passes import Pass, names
+from ..denoise.run import GUIDE
+from ..passes import Pass, sources
 
 # An odd multiplier far from any pattern (2³² / golden ratio): neighbouring frames get seeds that
 # have nothing in common.
@@ -42,5 +43,5 @@ def export_settings(
         # With -t on the command line Blender answers FIXED and that number.
         "threads": render.threads if render.threads_mode == "FIXED" else 0,
         "region": region,
-        "passes": names(passes),
+        "passes": sources(passes, *([GUIDE] if settings.use_denoising else [])),
     }

@@ -65,17 +65,19 @@ TEST_P(Equality, BatchesAgreeWithOneRayAfterAnother) {
   const FilterTable filter(settings_.pixel_filter, settings_.filter_width);
   const RenderContext context = make_context(*scene, settings_, filter.view());
   Film film(settings_.region, settings_, scene->max_radiance());
-  for (std::uint32_t y = 20; y < 70; ++y) {
-    for (std::uint32_t x = 30; x < 110; ++x) {
-      TileSums sums;
-      sums.reset(1);
-      for (std::uint32_t i = 0; i < settings_.samples; ++i) {
-        film.add(sums, 0, i, render_sample(context, x, y, i));
+  for (const Rect& cell : cells_of(settings_.region)) {
+    TileSums sums;
+    film.reset(sums, cell.area());
+    std::size_t pixel = 0;
+    for (std::uint32_t y = cell.y_min; y < cell.y_max; ++y) {
+      for (std::uint32_t x = cell.x_min; x < cell.x_max; ++x, ++pixel) {
+        for (std::uint32_t i = 0; i < settings_.samples; ++i) {
+          film.add(sums, pixel, i, render_sample(context, x, y, i));
+        }
       }
-      sums.samples = settings_.samples;
-      const Rect pixel{x, y, x + 1, y + 1};
-      film.merge({&pixel, 1}, sums);
     }
+    sums.samples = settings_.samples;
+    film.merge({&cell, 1}, sums);
   }
   for (const PassDesc& pass : known_passes()) {
     std::vector<float> expected(pass.channels * settings_.region.area());

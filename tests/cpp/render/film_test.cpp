@@ -7,8 +7,6 @@
 #include <random>
 #include <stdexcept>
 
-#include "render/tiles.h"
-
 namespace komorebi::testing {
 namespace {
 
@@ -23,7 +21,7 @@ PixelSample grey(float value) {
 
 void add_one(Film& film, std::uint32_t index, const PixelSample& sample) {
   TileSums sums;
-  sums.reset(1);
+  film.reset(sums, 1);
   film.add(sums, 0, index, sample);
   sums.samples = 1;
   film.merge({&kPixel, 1}, sums);
@@ -66,7 +64,7 @@ TEST(Film, TheLargestSumDoesNotOverflow) {
   settings.samples = 1u << 16;
   Film film(kPixel, settings, 1000.0f);
   TileSums sums;
-  sums.reset(1);
+  film.reset(sums, 1);
   for (std::uint32_t i = 0; i < settings.samples; ++i) film.add(sums, 0, i, grey(31999.0f));
   sums.samples = settings.samples;
   film.merge({&kPixel, 1}, sums);
@@ -101,47 +99,6 @@ TEST(Film, RefusesWhatItDoesNotHave) {
   Film film(kPixel, Settings{}, 1.0f);
   float out[4];
   EXPECT_THROW(film.read("Combined", {0, 0, 2, 1}, out), std::invalid_argument);
-}
-
-TEST(WorkItems, CoverEverySampleOfEveryPixelOnce) {
-  for (const bool progressive : {true, false}) {
-    for (const std::uint32_t samples : {1u, 7u, 64u, 100u}) {
-      Settings settings;
-      settings.samples = samples;
-      settings.sample_offset = 3;
-      settings.tile_size = 16;
-      settings.use_progressive = progressive;
-      const Rect region{5, 9, 60, 50};
-      std::vector<std::vector<int>> seen(60 * 50, std::vector<int>(samples + 3));
-      for (const WorkItem& item : work_items(region, settings)) {
-        for (std::uint32_t y = item.tile.y_min; y < item.tile.y_max; ++y) {
-          for (std::uint32_t x = item.tile.x_min; x < item.tile.x_max; ++x) {
-            for (std::uint32_t i = 0; i < item.count; ++i) ++seen.at(y * 60 + x).at(item.first + i);
-          }
-        }
-      }
-      for (std::uint32_t y = 0; y < 50; ++y) {
-        for (std::uint32_t x = 0; x < 60; ++x) {
-          const bool inside = x >= 5 && y >= 9;
-          for (std::uint32_t i = 0; i < samples + 3; ++i) {
-            ASSERT_EQ(seen[y * 60 + x][i], inside && i >= 3 ? 1 : 0);
-          }
-        }
-      }
-    }
-  }
-}
-
-TEST(WorkItems, RefineTheWholeFrameFromItsCentre) {
-  Settings settings;
-  settings.samples = 64;
-  settings.tile_size = 32;
-  const auto items = work_items({0, 0, 320, 160}, settings);
-  const std::size_t tiles = 10 * 5;
-  for (std::size_t i = 0; i < tiles; ++i) EXPECT_EQ(items[i].first + items[i].count, 1u);
-  EXPECT_EQ(items[0].tile.y_min, 64u);
-  EXPECT_TRUE(items[0].tile.x_min == 128u || items[0].tile.x_min == 160u);
-  EXPECT_EQ(items[tiles].first, 1u);
 }
 
 }  // namespace
