@@ -106,9 +106,8 @@ def _native_work(engine: Any, cancel: Any, work: Callable[[], T]) -> T:
 def _render_view(engine: Any, frame: Frame, parts: native_scene.Parts, view: View) -> None:
     native, data, threads = core.load(), frame.scene, frame.settings["threads"]
     progress = Progress(
-        engine, f"{frame.layer}, {view.name}" if view.name else frame.layer,
-        _tile_count(frame.region), _ignored(data),
-    )  # fmt: skip
+        engine, f"{frame.layer}, {view.name}" if view.name else frame.layer, _ignored(data)
+    )
     cancel = native.Cancel()
 
     def build() -> tuple[Any, Any]:
@@ -118,8 +117,9 @@ def _render_view(engine: Any, frame: Frame, parts: native_scene.Parts, view: Vie
     scene, settings = _native_work(engine, cancel, build)
     if dump.write(scene, settings):
         return
+    session = _native_work(engine, cancel, lambda: native.Session(scene, settings))
     writer = ResultWriter(engine, frame.layer, view.name, frame.region, frame.passes)
-    _run_session(engine, native.Session(scene, settings), writer, progress, frame)
+    _run_session(engine, session, writer, progress, frame)
 
 
 def _run_session(
@@ -135,7 +135,6 @@ def _run_session(
                 session.cancel()
                 continue
             tiles = session.updated_tiles()
-            progress.add_tiles(len(tiles))
             progress.update(session)
             if show_tiles:
                 writer.show(session, tiles)
@@ -169,11 +168,6 @@ def _denoised(engine: Any, session: Any, frame: Frame) -> FloatArray | None:
         )  # fmt: skip
     except RenderCancelled:
         return None
-
-
-def _tile_count(region: Region) -> int:
-    across = -(-(region[2] - region[0]) // TILE_SIZE)
-    return across * -(-(region[3] - region[1]) // TILE_SIZE)
 
 
 def _ignored(scene: SceneData) -> str:

@@ -23,6 +23,15 @@ PASSES = (
     Pass("Combined", 4, "RGBA", "COLOR", "Combined", lambda *_: True),
     Pass("Depth", 1, "Z", "VALUE", "Depth", lambda _, layer: layer.use_pass_z),
     Pass("Normal", 3, "XYZ", "VECTOR", "Normal", lambda _, layer: layer.use_pass_normal),
+    # Samples of each pixel, over the most that it may have; name and scale are Cycles'.
+    Pass(
+        "Debug Sample Count",
+        1,
+        "X",
+        "VALUE",
+        "Debug Sample Count",
+        lambda _, layer: layer.komorebi.pass_debug_sample_count,
+    ),
     # Combined as it was before denoising; the name is Cycles'.
     Pass("Noisy Image", 4, "RGBA", "COLOR", "Combined", lambda s, _: s.komorebi.use_denoising),
 )

@@ -14,21 +14,16 @@ INTERVAL_BACKGROUND = 1.0  # at least; in background each is a line in the log
 class Progress:
     """Passes the session's progress on to Blender, not more often than anyone can read."""
 
-    def __init__(self, engine: Any, label: str, tile_count: int, ignored: str) -> None:
+    def __init__(self, engine: Any, label: str, ignored: str) -> None:
         self._engine = engine
         self._label = label
-        self._tile_count = tile_count
         self._ignored = ignored
         self._interval = INTERVAL_BACKGROUND if bpy.app.background else INTERVAL_WINDOW
         self._next = 0.0
-        self._tiles = 0
 
     def stage(self, text: str) -> None:
         """Announces what is no sampling."""
         self._engine.update_stats("", f"{self._label} | {text}")
-
-    def add_tiles(self, count: int) -> None:
-        self._tiles += count
 
     def update(self, session: Any, final: bool = False) -> None:
         now = time.monotonic()
@@ -42,15 +37,27 @@ class Progress:
         self._engine.update_memory_stats(memory_used=memory, memory_peak=memory)
         parts = [self._label, f"Sample {state['sample']}/{state['samples']}"]
         if final:
+            parts += _decided(session, state)
             parts.append(f"{state['rays'] / 1e6:.1f}M rays")
         else:
-            tile = (self._tiles - 1) % self._tile_count + 1  # counted anew in each pass
-            parts.append(f"Tile {tile}/{self._tile_count}")
+            parts.append(f"Tile {state['tile']}/{state['tiles']}")
             parts.append(f"Remaining {_clock(state['remaining'])}")
         parts.append(f"Memory {memory:.1f}M")
         if final and self._ignored:
             parts.append(self._ignored)
         self._engine.update_stats("", " | ".join(parts))
+
+
+def _decided(session: Any, state: Any) -> list[str]:
+    """What was left to the core: how many samples there were, and what stopped them."""
+    resolved = session.resolved
+    light = resolved["light_samples"]
+    parts = [f"{light} light sample{'' if light == 1 else 's'} each"]
+    if "adaptive_threshold" in resolved:
+        parts.append(f"Noise threshold {resolved['adaptive_threshold']:.4g}")
+    if state["mean_samples"] != state["samples"]:
+        parts.append(f"{state['mean_samples']:.1f} samples a pixel")
+    return parts
 
 
 def _clock(seconds: float) -> str:

@@ -133,7 +133,8 @@ class KomorebiViewLayerSettings(bpy.types.PropertyGroup):
     """Settings of a view layer for the Komorebi render engine"""
 
     pass_debug_sample_count: BoolProperty(
-        name="Debug Sample Count", description="Number of camera samples of each pixel",
+        name="Debug Sample Count",
+        description="Camera samples of each pixel, as a fraction of the most that it may have",
         default=False, update=_update_render_passes,
     )  # fmt: skip
 

@@ -186,3 +186,32 @@ def test_clip_distances_cut_the_scene(folder):
     assert support.render(folder, "far")[24, 32, 3] == 0
     scene.camera.data.clip_end, scene.camera.data.clip_start = 100, 30
     assert support.render(folder, "near")[24, 32, 3] == 0
+
+
+def test_noise_threshold_stops_where_it_is_calm():
+    """The sky needs the least samples; the pass says how many there were, as Cycles' does."""
+    scene = bpy.context.scene
+    support.small(scene, size=(96, 64), samples=128)
+    bpy.ops.mesh.primitive_plane_add(size=40, location=(0, 0, -1))
+    scene.camera.rotation_euler.x += 0.35  # the horizon comes into sight
+    scene.view_layers[0].komorebi.pass_debug_sample_count = True
+    name = "Debug Sample Count"
+    assert (support.exported_picture(name) == 1.0).all(), "without a threshold all have all"
+    scene.komorebi.use_adaptive_sampling = True
+    scene.komorebi.adaptive_threshold = 0.005
+    scene.komorebi.adaptive_min_samples = 8
+    fraction = support.exported_picture(name)
+    assert fraction.shape == (64, 96, 1)
+    assert 0.0 < fraction.min() < 0.5
+    assert fraction.min() < fraction.max() <= 1.0
+    scene.komorebi.sample_offset = 4
+    assert (support.exported_picture(name) == 1.0).all(), "parts of a picture stop nowhere"
+
+
+def test_time_limit_ends_after_whole_passes():
+    scene = bpy.context.scene
+    support.small(scene, size=(64, 48), samples=1 << 16)
+    scene.komorebi.time_limit = 0.2
+    scene.view_layers[0].komorebi.pass_debug_sample_count = True
+    fraction = support.exported_picture("Debug Sample Count")
+    assert 0.0 < fraction.min() == fraction.max() < 0.5
