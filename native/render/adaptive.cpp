@@ -10,7 +10,7 @@ namespace {
 constexpr double kCyclesFactor = 5.0;  // Cycles compares errors with 5 thresholds
 constexpr float kSmallestAutomaticThreshold = 0.001f;
 constexpr std::uint32_t kFewestSamples = 4;
-constexpr std::uint32_t kAutomaticFewest = 16;
+constexpr std::uint32_t kAutomaticFewest = 8, kAutomaticFewestRays = 16;
 
 /// The first power of two n ≥ 16 / threshold^0.3, that is, (n / 16)^10 · threshold³ ≥ 1.
 std::uint32_t cycles_min_samples(double threshold) {
@@ -25,17 +25,19 @@ std::uint32_t cycles_min_samples(double threshold) {
 
 }  // namespace
 
-AdaptiveRule::AdaptiveRule(const Settings& s)
+AdaptiveRule::AdaptiveRule(const Settings& s, std::uint32_t light_samples)
     : in_use_(s.use_adaptive_sampling),
       threshold_(s.adaptive_threshold),
       min_samples_(std::max(kFewestSamples, s.adaptive_min_samples)),
       samples_(s.samples) {
   if (threshold_ == 0.0f) {
-    threshold_ = std::max(kSmallestAutomaticThreshold, 1.0f / static_cast<float>(samples_));
+    threshold_ = std::max(kSmallestAutomaticThreshold,
+                          1.0f / static_cast<float>(samples_) / static_cast<float>(light_samples));
     eases_ = s.time_limit == 0.0f;
   }
   if (s.adaptive_min_samples == 0) {
-    min_samples_ = eases_ ? kAutomaticFewest : cycles_min_samples(threshold_);
+    min_samples_ = eases_ ? std::max(kAutomaticFewest, kAutomaticFewestRays / light_samples)
+                          : cycles_min_samples(threshold_);
   }
 }
 

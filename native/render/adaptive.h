@@ -22,13 +22,15 @@ namespace komorebi {
 class AdaptiveRule {
  public:
   AdaptiveRule() = default;  ///< never stops
-  /// As Cycles, an automatic threshold is 1 / samples (at least 0.001), but sooner than at the last
-  /// sample it is √(n / samples) of that: an early stop must be worth more, since each of the
-  /// remaining samples is (measured: the error at equal time is lower). Cycles' automatic minimum
-  /// of samples, 16 / threshold^0.3, makes up for estimates of single pixels; under the automatic
-  /// threshold a cell's 64 pixels and that margin allow 16. With a time limit the last sample is
-  /// not known, so that the threshold is the same all along.
-  explicit AdaptiveRule(const Settings& settings);
+  /// As in Cycles an automatic threshold is 1 / samples (at least 0.001), where each of the light
+  /// rays of a camera sample counts as a sample. But after n samples it is √(n / samples) of that:
+  /// an early stop must be worth more, since the more samples are left, the more each of them
+  /// brings (docs/performance.md has the figures). With a time limit the last sample is not known,
+  /// so the threshold is the same all along.
+  ///
+  /// Cycles' automatic minimum of 16 / threshold^0.3 samples makes up for estimates from single
+  /// pixels; with an automatic threshold, that margin and a cell's 64 pixels allow 8 to 16.
+  AdaptiveRule(const Settings& settings, std::uint32_t light_samples);
 
   bool in_use() const { return in_use_; }
   float threshold() const { return threshold_; }

@@ -37,7 +37,7 @@ Session::Session(std::shared_ptr<const Scene> scene, const Settings& settings)
       settings_(checked(require_ready(scene_), settings)),
       filter_(settings_.pixel_filter, settings_.filter_width),
       context_(make_context(*scene_, settings_, filter_.view())),
-      rule_(settings_),
+      rule_(settings_, context_.light_samples),
       pool_(settings_.threads),
       film_(film_region(*scene_, settings_), settings_, scene_->max_radiance()),
       schedule_(make_tiles(film_.region(), settings_.tile_size, pool_.size()), settings_, rule_) {

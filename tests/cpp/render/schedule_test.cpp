@@ -53,7 +53,7 @@ TEST(Schedule, CoversEverySampleOfEveryPixelOnce) {
         settings.sample_offset = 3;
         settings.use_progressive = progressive;
         Film film(region, settings, 1.0f);
-        Schedule schedule(make_tiles(region, 16, 1), settings, AdaptiveRule(settings));
+        Schedule schedule(make_tiles(region, 16, 1), settings, AdaptiveRule(settings, 1));
         std::vector<std::vector<int>> seen(60 * 50, std::vector<int>(samples + 3));
         play(schedule, film, 3, drop, [&](const WorkItem& item) {
           for (const Rect& c : *item.cells) {
