@@ -10,6 +10,7 @@ from pathlib import Path
 
 import komorebi_core as core
 import numpy as np
+import pytest
 import shapes
 
 
@@ -29,6 +30,36 @@ def test_pictures_have_the_shapes_and_values_expected() -> None:
     assert color[:, :, :3].std() > 0.02  # the cube and its contact shade
     assert (color[:, :, 3] == 1.0).all()
     assert 4.0 < depth[24, 32, 0] < 9.0
+
+
+def test_adaptive_sampling_says_where_the_work_went() -> None:
+    settings = core.Settings(
+        samples=64,
+        light_samples=1,
+        use_adaptive_sampling=True,
+        adaptive_threshold=0.02,
+        adaptive_min_samples=8,
+        passes=("Combined", "Debug Sample Count"),
+    )
+    session = shapes.finish(core.Session(shapes.scene(), settings))
+    counts = session.read("Debug Sample Count")
+    assert counts.shape == (48, 64, 1) and counts.max() <= 1.0
+    assert counts.min() == 8 / 64
+    state = session.progress()
+    assert state["mean_samples"] == np.mean(64.0 * counts)
+    assert state["tile"] == state["tiles"] and state["fraction"] == 1.0
+    assert session.resolved["adaptive_min_samples"] == 8
+    with pytest.raises(ValueError, match="not among the settings' passes"):
+        session.read("Depth")
+
+
+def test_a_time_limited_render_is_repeated_by_its_count() -> None:
+    limited = core.Session(shapes.scene(), core.Settings(samples=1 << 16, time_limit=0.1))
+    assert limited.wait(60.0)
+    samples = limited.progress()["sample"]
+    assert 1 <= samples < 1 << 16
+    again = shapes.finish(core.Session(shapes.scene(), core.Settings(samples=samples)))
+    assert np.array_equal(again.read("Combined"), limited.read("Combined"))
 
 
 def test_row_zero_is_at_the_bottom() -> None:

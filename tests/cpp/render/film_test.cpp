@@ -92,6 +92,61 @@ TEST(Film, DepthIsTheFirstSamplesInAnyOrder) {
   EXPECT_EQ(read(film, "Depth")[0], 10.0f);
 }
 
+TEST(Film, KeepsNoMoreThanIsAskedFor) {
+  const Rect region{3, 5, 203, 105};
+  Settings settings;
+  settings.passes = {"Combined"};
+  Film film(region, settings, 1.0f);
+  EXPECT_LT(film.byte_count(), 33 * region.area());
+  TileSums sums;
+  film.reset(sums, 64);
+  EXPECT_TRUE(sums.normal.empty() && sums.depth.empty());
+  std::vector<float> out(3 * region.area());
+  EXPECT_THROW(film.read("Depth", region, out.data()), std::invalid_argument);
+  EXPECT_THROW(film.read("Normal", region, out.data()), std::invalid_argument);
+  EXPECT_GT(Film(region, Settings{}, 1.0f).byte_count(), 60 * region.area());
+}
+
+TEST(Film, ReadsAnyRectangleOnAnyNumberOfThreads) {
+  const Rect region{3, 5, 203, 305}, part{10, 6, 100, 299};
+  Film film(region, Settings{}, 1.0f);
+  for (const Rect& cell : cells_of(region)) {
+    TileSums sums;
+    film.reset(sums, cell.area());
+    for (std::size_t i = 0; i < cell.area(); ++i) {
+      PixelSample s = grey(static_cast<float>(cell.x_min + i % cell.width()) / 256.0f);
+      s.normal = Vec3(0.0f, 0.0f, static_cast<float>(cell.y_min + i / cell.width()) / 512.0f);
+      film.add(sums, i, 0, s);
+    }
+    sums.samples = 1;
+    film.merge({&cell, 1}, sums);
+  }
+  ThreadPool pool(3);
+  std::vector<float> rgba(4 * part.area()), normal(3 * part.area());
+  film.read("Combined", part, rgba.data(), pool);
+  film.read("Normal", part, normal.data(), pool);
+  for (std::size_t i = 0; i < part.area(); ++i) {
+    const auto x = static_cast<float>(part.x_min + i % part.width());
+    const auto y = static_cast<float>(part.y_min + i / part.width());
+    ASSERT_EQ(rgba[4 * i + 1], x / 256.0f);
+    ASSERT_EQ(normal[3 * i + 2], y / 512.0f);
+  }
+}
+
+TEST(Film, RoundsToNearestEven) {
+  EXPECT_EQ(round_to_integer(2.5), 2);
+  EXPECT_EQ(round_to_integer(3.5), 4);
+  EXPECT_EQ(round_to_integer(-2.5), -2);
+  EXPECT_EQ(round_to_integer(-0.4), 0);
+  EXPECT_EQ(round_to_integer(70368744177663.6), 70368744177664);  // 2^46, the largest sample
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-7e13, 7e13);
+  for (int i = 0; i < 10000; ++i) {
+    const double x = any(random);
+    ASSERT_EQ(round_to_integer(x), static_cast<std::int64_t>(std::nearbyint(x)));
+  }
+}
+
 TEST(Film, RefusesWhatItDoesNotHave) {
   Settings settings;
   settings.passes = {"Combined", "Glossy"};
