@@ -11,24 +11,25 @@
 namespace komorebi::bench {
 namespace {
 
-constexpr std::size_t kWarm = 3;  ///< builds after the first, of which the median counts
+/// Builds after the first, of which the median counts: fewer where each takes long.
+std::size_t warm_count(double cold_seconds) {
+  return cold_seconds < 0.3 ? 3 : 1;
+}
 
 struct Entrant {
   std::string engine, mode;
-  /// {cold seconds, warm seconds…, bytes, peak bytes during the first build}
+  /// {bytes, peak bytes during the first build, cold seconds, warm seconds…}
   std::function<std::vector<double>()> measure;
 };
 
-/// Times `first`, then `again` kWarm times.
+/// Times `first`, then `again` a few times.
 std::vector<double> times(const std::function<void()>& first, const std::function<void()>& again,
                           const std::function<double()>& bytes) {
   forget_peak();
   const double before = memory("VmRSS");
-  std::vector<double> values{seconds_of(first)};
-  const double peak = memory("VmHWM") - before;
-  for (std::size_t k = 0; k < kWarm; ++k) values.push_back(seconds_of(again));
-  values.push_back(bytes());
-  values.push_back(peak);
+  const double cold = seconds_of(first);
+  std::vector<double> values{bytes(), memory("VmHWM") - before, cold};
+  for (std::size_t k = 0; k < warm_count(cold); ++k) values.push_back(seconds_of(again));
   return values;
 }
 
@@ -90,12 +91,12 @@ void build_part(const Options& options) {
     for (int round = 0; round < options.whole("rounds", 5); ++round) {
       for (std::size_t i = 0; i < entrants.size(); ++i) {
         const std::vector<double> got = in_fresh_process(entrants[i].measure);
-        std::vector<double> again(got.begin() + 1, got.begin() + 1 + kWarm);
+        std::vector<double> again(got.begin() + 3, got.end());
         std::sort(again.begin(), again.end());
-        cold[i].push_back(got[0]);
-        warm[i].push_back(again[kWarm / 2]);
-        bytes[i] = got[1 + kWarm];
-        peak[i] = std::max(peak[i], got[2 + kWarm]);
+        bytes[i] = got[0];
+        peak[i] = std::max(peak[i], got[1]);
+        cold[i].push_back(got[2]);
+        warm[i].push_back(again[again.size() / 2]);
       }
     }
     for (std::size_t i = 0; i < entrants.size(); ++i) {

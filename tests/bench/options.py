@@ -50,6 +50,14 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument(
         "--size", type=size, metavar="WIDTHxHEIGHT", help="pictures: timed at this size instead"
     )
+    made.add_argument(
+        "--from",
+        dest="earlier",
+        type=Path,
+        action="append",
+        metavar="RESULT",
+        help="tables of an earlier result, or of several together; nothing is measured",
+    )
     made.add_argument("--json", type=Path, help="write the result here too")
     made.add_argument("--markdown", type=Path, help="write the tables here")
     return made

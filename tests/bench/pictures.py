@@ -19,7 +19,9 @@ Row = dict[str, Any]
 SEEDS = (1, 2)  # pictures whose errors are averaged
 KOMOREBI_SAMPLES = (2, 4, 8, 16, 32, 64)
 ADAPTIVE_THRESHOLDS = (0.1, 0.05, 0.025)
-ADAPTIVE_SAMPLES = 4096  # the most that a pixel may get when it stops by its noise
+ADAPTIVE_FACTOR = (
+    8  # times the fixed samples: the most that a pixel may get when it stops by its noise
+)
 IMPATIENT_SAMPLES = 8
 
 
@@ -74,14 +76,14 @@ def fixed_way(
 
 
 def adaptive_way(
-    scene: Scene, engine: str, truth: np.ndarray, wanted: float
+    scene: Scene, engine: str, truth: np.ndarray, most: int, wanted: float
 ) -> tuple[Way, list[Any]]:
     """The noise threshold at which the engine's own adaptive sampling has the error `wanted`."""
     found: list[tuple[float, float, float]] = []
     base = {"use_adaptive_sampling": True, "adaptive_min_samples": 0}
     for threshold in ADAPTIVE_THRESHOLDS:
         settings = {**base, "adaptive_threshold": threshold}
-        error, seconds = errors(scene, engine, truth, ADAPTIVE_SAMPLES, settings)
+        error, seconds = errors(scene, engine, truth, most, settings)
         found.append((threshold, error, seconds))
         if error <= wanted and len(found) > 1:
             break
@@ -89,7 +91,7 @@ def adaptive_way(
     _, slope = power_fit((t0, t1), (e0, e1))
     threshold = float(np.clip(t1 * (wanted / e1) ** (1.0 / max(slope, 0.1)), 0.002, 1.0))
     settings = {**base, "adaptive_threshold": threshold}
-    return Way(f"adaptive {threshold:.3f}", ADAPTIVE_SAMPLES, settings), found
+    return Way(f"adaptive {threshold:.3f}", most, settings), found
 
 
 def faster(
@@ -97,7 +99,7 @@ def faster(
 ) -> tuple[Way, Row]:
     """`fixed` or, where it takes less time at the small size and its error is no larger, adaptive
     sampling."""
-    adaptive, tried = adaptive_way(scene, engine, truth, wanted)
+    adaptive, tried = adaptive_way(scene, engine, truth, ADAPTIVE_FACTOR * fixed.samples, wanted)
     _, fixed_seconds = errors(scene, engine, truth, fixed.samples, fixed.settings)
     error, seconds = errors(scene, engine, truth, adaptive.samples, adaptive.settings)
     # An adaptive render that misses the error by little is credited with the time to meet it.

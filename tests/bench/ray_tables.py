@@ -34,6 +34,20 @@ def label(row: Row) -> str:
     return f"{row['tree']} {row['query']}"
 
 
+def rivals(rows: list[Row]) -> dict[str, Row]:
+    """Whom we are compared with, of the rows of one mesh, kind of rays and number of threads:
+    MEDIUM and robust MEDIUM trees asked ray by ray, the best single rays, the best of all."""
+    embree = pick(rows, engine="embree")
+    singles = pick(embree, query="1")
+    fastest = sorted(embree, key=lambda row: median(row["seconds"]))
+    return {
+        "medium": pick(singles, tree="MEDIUM")[0],
+        "robust": pick(singles, tree="MEDIUM+ROBUST")[0],
+        "single": next(row for row in fastest if row["query"] == "1"),
+        "best": fastest[0],
+    }
+
+
 def ray_table(rows: list[Row], kind: str, threads: float) -> Table:
     """One kind of rays on one number of threads; a line a mesh and tree of ours."""
     table = Table(title(kind, threads), list(HEADS))
@@ -41,12 +55,7 @@ def ray_table(rows: list[Row], kind: str, threads: float) -> Table:
     worst = 0.0
     for mesh in unique(rows, "mesh"):
         here = pick(rows, mesh=mesh)
-        rivals = pick(here, engine="embree")
-        best = min(rivals, key=lambda row: median(row["seconds"]))
-        singles = pick(rivals, query="1")
-        best_single = min(singles, key=lambda row: median(row["seconds"]))
-        medium = pick(singles, tree="MEDIUM")[0]
-        robust = pick(singles, tree="MEDIUM+ROBUST")[0]
+        them = rivals(here)
         for tree in unique(pick(here, engine="komorebi"), "tree"):
             ours = pick(here, engine="komorebi", tree=tree)
             fast = min(
@@ -54,16 +63,21 @@ def ray_table(rows: list[Row], kind: str, threads: float) -> Table:
                 key=lambda r: median(r["seconds"]),
             )
             small = pick(ours, instructions="SSE4", query="bundles")
-            against = [ratio(r["seconds"], fast["seconds"]) for r in (medium, robust, best)]
+            against = [
+                ratio(r["seconds"], fast["seconds"])
+                for r in (them["medium"], them["robust"], them["best"])
+            ]
             against.append(
-                ratio(best_single["seconds"], small[0]["seconds"]) if small else float("nan")
+                ratio(them["single"]["seconds"], small[0]["seconds"]) if small else float("nan")
             )
             means.setdefault(tree, []).append(against)
-            worst = max(worst, *(spread(r["seconds"]) for r in (fast, medium, best)))
+            worst = max(
+                worst, *(spread(r["seconds"]) for r in (fast, them["medium"], them["best"]))
+            )
             table.add(
-                mesh, tree, speed(fast), speed(medium), speed(robust), speed(best), label(best),
+                mesh, tree, speed(fast), speed(them["medium"]), speed(them["robust"]), speed(them["best"]), label(them["best"]),
                 *(times(a) for a in against),
-                f"{100 * fast['blocked_share']:.1f} %", f"{1e6 * medium['differing_share']:.0f} ppm",
+                f"{100 * fast['blocked_share']:.1f} %", f"{1e6 * them['medium']['differing_share']:.0f} ppm",
             )  # fmt: skip
     for tree, list_of in means.items():
         columns = [geometric_mean(list(column)) for column in zip(*list_of, strict=True)]

@@ -1,0 +1,110 @@
+"""The project's aims for speed, each as one figure of what was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from bench.core import Row, pick, unique
+from bench.ray_tables import rivals
+from bench.statistics import geometric_mean, median, ratio
+from bench.tables import Table, figure, times
+
+Parts = dict[str, list[Row]]
+LARGE = 200_000  # triangles, from which builds count
+
+
+def pictures(parts: Parts, kind: str) -> list[float]:
+    """Cycles' seconds over ours for scenes of a kind (ao, map), 24 views apart."""
+    rows = [r for r in parts.get("pictures", []) if "failed" not in r]
+    chosen = [r for r in rows if r["scene"].endswith(kind) and not r["views"]]
+    return [ratio(r["cycles_seconds"], r["komorebi_seconds"]) for r in chosen]
+
+
+def views(parts: Parts) -> list[float]:
+    """The same for the views of one process."""
+    rows = [r for r in parts.get("pictures", []) if r.get("views")]
+    return [ratio(r["cycles_seconds"], r["komorebi_seconds"]) for r in rows]
+
+
+def builds(parts: Parts, ours: str, theirs: str) -> list[float]:
+    """Cold builds on the most threads of meshes that are large enough."""
+    rows = [r for r in parts.get("build", []) if r["triangles"] >= LARGE]
+    threads = max(unique(rows, "threads"), default=0)
+    found = []
+    for mesh in unique(rows, "mesh"):
+        here = {r["mode"]: r for r in pick(rows, mesh=mesh, threads=threads)}
+        if ours in here and theirs in here:
+            found.append(ratio(here[theirs]["cold_seconds"], here[ours]["cold_seconds"]))
+    return found
+
+
+def rays(parts: Parts, kinds: Iterable[str], against: str, small: bool = False) -> list[float]:
+    """Our best tree's rays of each mesh and kind against a rival, on one thread."""
+    rows = parts.get("rays", [])
+    threads = min(unique(rows, "threads"), default=0)
+    found = []
+    for kind in kinds:
+        for mesh in unique(rows, "mesh"):
+            here = pick(rows, rays=kind, mesh=mesh, threads=threads)
+            ours = pick(here, engine="komorebi")
+            ours = pick(ours, instructions="SSE4") if small else ours
+            if not ours:
+                continue
+            best = min(ours, key=lambda row: median(row["seconds"]))
+            found.append(ratio(rivals(here)[against]["seconds"], best["seconds"]))
+    return found
+
+
+def byte_shares(parts: Parts) -> list[float]:
+    """Bytes of our largest tree over those of Embree's MEDIUM."""
+    rows = parts.get("memory") or parts.get("build", [])
+    found = []
+    for mesh in unique(rows, "mesh"):
+        here = pick(rows, mesh=mesh, threads=max(unique(rows, "threads")))
+        ours = max(row["bytes"] for row in pick(here, engine="komorebi"))
+        found.append(ours / pick(here, mode="MEDIUM")[0]["bytes"])
+    return found
+
+
+def exports(parts: Parts, new: bool) -> list[float]:
+    """Seconds of the first export and build of a million faces, smooth or flat."""
+    rows = pick(parts.get("export", []), case="first")
+    return [r["seconds_per_million_faces"] for r in rows if r["blender"].startswith("4.5") == new]
+
+
+Aim = tuple[str, str, str, Callable[[Parts], list[float]]]
+FAR, NEAR = ("ao:16",), ("ao:16:0.1",)
+AIMS: tuple[Aim, ...] = (
+    ("whole picture at equal error / Cycles: white sky", "≥ 6×", "≥ 12×", lambda p: pictures(p, "-ao")),
+    ("whole picture at equal error / Cycles: map", "≥ 10×", "≥ 30×", lambda p: pictures(p, "-map")),
+    ("24 views in one process / Cycles", "≥ 8×", "≥ 20×", views),
+    ("LINEAR build, cold / Embree LOW", "≥ 2×", "≥ 4×", lambda p: builds(p, "LINEAR", "LOW")),
+    ("SAH build, cold / Embree MEDIUM", "≥ 2×", "≥ 4×", lambda p: builds(p, "SAH", "MEDIUM")),
+    ("AO rays, no limit / Embree MEDIUM, 1 ray", "≥ 1.4×", "≥ 2.2×", lambda p: rays(p, FAR, "medium")),
+    ("AO rays, 10 % / Embree MEDIUM, 1 ray", "≥ 1.6×", "≥ 2.5×", lambda p: rays(p, NEAR, "medium")),
+    ("AO rays / Embree's best", "≥ 0.95×", "≥ 1.5×", lambda p: rays(p, FAR + NEAR, "best")),
+    ("AO rays without AVX / Embree's best single rays", "≥ 1.0×", "≥ 1.3×", lambda p: rays(p, FAR + NEAR, "single", True)),
+    ("bytes / Embree MEDIUM", "≤ 0.45×", "≤ 0.30×", byte_shares),
+    ("export and build of a million faces, 4.5, seconds", "≤ 0.25", "≤ 0.1", lambda p: exports(p, True)),
+    ("the same, 3.4.1", "≤ 0.5", "≤ 0.3", lambda p: exports(p, False)),
+)  # fmt: skip
+
+
+def table(parts: Parts) -> Table:
+    """A line for each aim that something was measured for."""
+    made = Table(
+        "Aims: geometric means (worst to best)",
+        ["aim", "must", "wanted", "measured", "of"],
+    )
+    for name, must, wanted, measure in AIMS:
+        values = measure(parts)
+        if not values:
+            continue
+        show: Callable[[Any], str] = times if must.endswith("×") else figure
+        worst, best = min(values), max(values)
+        if must.startswith("≤"):
+            worst, best = best, worst
+        told = f"{show(geometric_mean(values))} ({show(worst)} to {show(best)})"
+        made.add(name, must, wanted, told, str(len(values)))
+    return made
