@@ -15,6 +15,7 @@ from bench.progress import say
 from bench.tables import Table
 
 SCHEMA = 1
+BEGIN, END = "<!-- tables -->", "<!-- end of tables -->"
 Rows = list[dict[str, Any]]
 Part = tuple[str, Callable[[argparse.Namespace], Rows], Callable[[Rows], list[Table]]]
 
@@ -28,10 +29,39 @@ PARTS: dict[str, Part] = {
 }
 
 
-def earlier_rows(files: list[Path], part: str) -> Rows:
-    """The rows of a part in earlier results."""
+def earlier_parts(files: list[Path], part: str) -> tuple[Rows, list[str]]:
+    """The rows of a part in earlier results, and the commands that made them."""
     results = [json.loads(file.read_text(encoding="utf-8")) for file in files]
-    return [row for r in results if part in r["parts"] for row in r["parts"][part]["rows"]]
+    found = [r["parts"][part] for r in results if part in r["parts"]]
+    rows = [row for content in found for row in content["rows"]]
+    return rows, list(dict.fromkeys(c for content in found for c in content["commands"]))
+
+
+def described(earlier: list[Path] | None) -> dict[str, Any]:
+    """The machine now, or that of the first of earlier results."""
+    if not earlier:
+        return machine.describe()
+    found: dict[str, Any] = json.loads(earlier[0].read_text(encoding="utf-8"))["machine"]
+    return found
+
+
+def command(part: str, words: list[str]) -> str:
+    """What makes one part's tables alone."""
+    kept, skip = [], False
+    for word in words:
+        if not skip and word not in options.PARTS and word not in ("--json", "--markdown"):
+            kept.append(word)
+        skip = not skip and word in ("--json", "--markdown")
+    return " ".join(["./run bench", part, *kept])
+
+
+def write_markdown(path: Path, text: str) -> None:
+    """Into the place that a document keeps for it, or as a document of its own."""
+    old = path.read_text(encoding="utf-8") if path.is_file() else ""
+    before, found, rest = old.partition(BEGIN)
+    if found:
+        text = f"{before}{BEGIN}\n\n{text}\n{END}{rest.partition(END)[2]}"
+    path.write_text(text, encoding="utf-8")
 
 
 def measured_rows(part: str, chosen: argparse.Namespace, done: dict[str, Any]) -> Rows:
@@ -47,7 +77,7 @@ def main(words: list[str]) -> int:
     """Run what the command line asks for; returns the exit code."""
     chosen = options.read(words)
     result: dict[str, Any] = {"schema": SCHEMA, "command": " ".join(["./run bench", *words])}
-    result |= {"machine": machine.describe(), "parts": {}}
+    result |= {"machine": described(chosen.earlier), "parts": {}}
     about, done = result["machine"], result["parts"]
     print(f"{about['cpu']}, {about['cores']} cores, {about['compiler']}, {about['instruction_set']}, "
           f"revision {about['revision']}, load {about['load_average']:.1f}")  # fmt: skip
@@ -58,11 +88,10 @@ def main(words: list[str]) -> int:
     for part in chosen.parts:
         start = time.perf_counter()
         try:
-            rows = (
-                earlier_rows(chosen.earlier, part)
-                if chosen.earlier
-                else measured_rows(part, chosen, done)
-            )
+            if chosen.earlier:
+                rows, commands = earlier_parts(chosen.earlier, part)
+            else:
+                rows, commands = measured_rows(part, chosen, done), [command(part, words)]
         except RuntimeError as error:
             print(f"./run bench: {part}: {error}", file=sys.stderr)
             failures += 1
@@ -70,15 +99,19 @@ def main(words: list[str]) -> int:
         made = PARTS[part][2](rows) if rows else []
         for table in made:
             print("\n" + table.text(), flush=True)
-        tables += [(f"./run bench {part}", table) for table in made]
+        tables += [("; ".join(commands), table) for table in made]
         seconds = time.perf_counter() - start
-        done[part] = {"seconds": seconds, "rows": rows, "tables": [t.as_json() for t in made]}
+        done[part] = {"seconds": seconds, "commands": commands, "rows": rows}
+        done[part]["tables"] = [table.as_json() for table in made]
         target.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
     summary = aims.table({part: content["rows"] for part, content in done.items()})
     print("\n" + summary.text())
     if chosen.markdown is not None:
-        text = "\n".join(t.markdown(c) for c, t in [("./run bench", summary), *tables])
-        chosen.markdown.write_text(text, encoding="utf-8")
+        where = ", ".join(f"{k} {about[k]}" for k in ("cpu", "cores", "revision", "load_average"))
+        text = f"Machine: {where}.\n\n" + "\n".join(
+            t.markdown(c) for c, t in [("./run bench", summary), *tables]
+        )
+        write_markdown(chosen.markdown, text)
     print(f"\nWritten to {target}")
     return 1 if failures else 0
 
