@@ -51,6 +51,10 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         description="Camera samples a pixel; with a noise threshold the most that one may take",
         default=128, min=1, max=1 << 24,
     )  # fmt: skip
+    # Off, though Cycles has it on: at these few samples it is no sooner at the same error (192 × 108
+    # pixels, ambient occlusion: error 0.0047 in 0.78 s both ways; 8 % sooner at 0.0028), and parts
+    # of a picture that are to be put together need every sample. The threshold is automatic, for
+    # Cycles' 0.01 lies above the error of 64 samples: it would stop everywhere at once.
     use_adaptive_sampling: BoolProperty(
         name="Use Adaptive Sampling",
         description="Stop sampling each part of the picture when its noise is below the threshold",
@@ -60,7 +64,7 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         name="Noise Threshold",
         description="Noise at which sampling stops: lower values cost more time; "
         "0 chooses it from the number of samples",
-        default=0.01, min=0.0, max=1.0, soft_min=0.001, precision=4,
+        default=0.0, min=0.0, max=1.0, precision=4,
     )  # fmt: skip
     adaptive_min_samples: IntProperty(
         name="Min Samples",

@@ -6,7 +6,7 @@ import support
 
 DEFAULTS = {
     "method": "AMBIENT_OCCLUSION", "samples": 128, "light_samples": 0, "sample_offset": 0,
-    "use_adaptive_sampling": False, "adaptive_min_samples": 0, "time_limit": 0.0,
+    "use_adaptive_sampling": False, "adaptive_threshold": 0.0, "adaptive_min_samples": 0, "time_limit": 0.0, "use_denoising": False,
     "seed": 0, "use_animated_seed": False, "ao_distance": 0.0, "ao_sampling": "COSINE",
     "environment_sampling": "PRODUCT", "pixel_filter": "BLACKMAN_HARRIS", "filter_width": 1.5,
     "use_progressive": True,
@@ -32,7 +32,6 @@ def test_defaults_are_the_fixed_ones():
     settings = bpy.data.scenes.new("Fresh").komorebi
     for name, value in DEFAULTS.items():
         assert getattr(settings, name) == value, (name, getattr(settings, name))
-    assert abs(settings.adaptive_threshold - 0.01) < 1e-6
     assert all(abs(c - 0.8) < 1e-6 for c in settings.clay_color)
     for name, items in ITEMS.items():
         assert [i.identifier for i in settings.bl_rna.properties[name].enum_items] == items
