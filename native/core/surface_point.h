@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/local_ray.h"
 #include "core/scene_view.h"
 
 namespace komorebi {
@@ -20,10 +21,6 @@ namespace detail {
 constexpr float gamma(int n) {
   const float nu = static_cast<float>(n) * 5.9604645e-8f;
   return nu / (1.0f - nu);
-}
-
-inline Vec3 abs_times(const Mat3& m, const Vec3& v) {
-  return glm::abs(m[0]) * v.x + glm::abs(m[1]) * v.y + glm::abs(m[2]) * v.z;
 }
 
 /// Unit vector; scaled first, so that squares of tiny or huge lengths neither vanish nor overflow.
@@ -104,8 +101,8 @@ inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit, const 
   // z = 0), in the world, and on the way back by local_from_world · (position − place).
   Vec3 local_error = gamma(2) * (glm::abs(Vec3(local)) + Vec3(max_abs(Vec3(local))));
   local_error +=
-      abs_times(instance.local_from_world,
-                gamma(6) * glm::abs(Vec3(relative)) + gamma(2) * glm::abs(Vec3(relative + place)));
+      product(absolute(instance.local_from_world),
+              gamma(6) * glm::abs(Vec3(relative)) + gamma(2) * glm::abs(Vec3(relative + place)));
 
   // A point on an edge may not round to the far side of the neighbour: it moves into its own
   // triangle.
@@ -118,8 +115,8 @@ inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit, const 
   }
   SurfacePoint point;
   point.position = Vec3(relative + place);
-  const Vec3 error =
-      abs_times(instance.world_from_local, local_error) + gamma(2) * glm::abs(point.position);
+  const Vec3 error = product(absolute(instance.world_from_local), local_error) +
+                     gamma(2) * glm::abs(point.position);
 
   // Normals go by the inverse transpose, which keeps the outside outside under mirroring too.
   const Mat3 normal_transform = glm::transpose(instance.local_from_world);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "bvh/traverse.h"
-#include "render/light.h"
+#include "render/camera_kernel.h"
 #include "render/one_ray.h"
 
 namespace komorebi {
@@ -17,18 +17,44 @@ constexpr std::uint32_t kLightRaysPerBatch = 8192;
 
 void BatchIntegrator::start(std::size_t begin, std::size_t end, std::uint32_t first) {
   paths_.clear();
-  camera_rays_.clear();
+  const auto count = static_cast<std::uint32_t>(end - begin);
+  for (auto& column : starts_) column.resize(std::size_t{count} + kPadding);
   auto pixel = static_cast<std::uint32_t>(begin % pixels_.size());
   auto sample = first + static_cast<std::uint32_t>(begin / pixels_.size());
-  for (std::size_t i = begin; i < end; ++i) {
+  for (std::uint32_t i = 0; i < count; ++i) {
     const Pixel& at = pixels_[pixel];
-    paths_.push_back({at.x, at.y, pixel, sample});
-    camera_rays_.push(start_ray(context_, at.x, at.y, sample));
+    paths_.push_back({pixel, sample});
+    starts_[kColumnX][i] = at.x;
+    starts_[kColumnY][i] = at.y;
+    starts_[kColumnSample][i] = sample;
+    starts_[kColumnSeed][i] = at.seed;
     if (++pixel == pixels_.size()) pixel = 0, ++sample;
   }
+  start_camera_rays(count);
   hits_.resize(paths_.size());
   intersect(context_.scene, camera_rays_.span(), hits_.data());
   rays_ += paths_.size();
+}
+
+void BatchIntegrator::start_camera_rays(std::uint32_t count) {
+  camera_rays_.resize(count, kPadding);
+  CameraBlock block{};
+  block.count = count;
+  block.x = starts_[kColumnX].data();
+  block.y = starts_[kColumnY].data();
+  block.sample = starts_[kColumnSample].data();
+  block.pixel_seed = starts_[kColumnSeed].data();
+  for (std::size_t c = 0; c < 3; ++c) {
+    block.origin[c] = camera_rays_.floats(c);
+    block.direction[c] = camera_rays_.floats(3 + c);
+  }
+  block.t_max = camera_rays_.floats(7);
+  block.time = camera_rays_.floats(8);
+  start_rays(context_, block);
+  std::fill_n(camera_rays_.floats(6), count, 0.0f);
+  std::fill_n(camera_rays_.words(0), count, kMaskCamera);
+  std::fill_n(camera_rays_.words(1), count, kNone);
+  std::fill_n(camera_rays_.words(2), count, kNone);
 }
 
 void BatchIntegrator::shade() {
@@ -57,8 +83,8 @@ bool BatchIntegrator::light(const Cancel& cancel) {
   block_owners_.clear();
   for (std::uint32_t i = 0; i < paths_.size(); ++i) {
     if (!hits_[i].valid()) continue;
-    const Sampler sampler(context_.seed, paths_[i].x, paths_[i].y);
-    light_block_.push(points_[i], sampler.pixel_seed, paths_[i].sample * context_.light_samples);
+    light_block_.push(points_[i], pixels_[paths_[i].pixel].seed,
+                      paths_[i].sample * context_.light_samples);
     block_owners_.push_back(i);
     if (light_block_.full() && !cast_block(cancel)) return false;
   }
@@ -113,7 +139,9 @@ bool BatchIntegrator::render(Cells cells, std::uint32_t first, std::uint32_t cou
   pixels_.clear();
   for (const Rect& cell : cells) {
     for (std::uint32_t y = cell.y_min; y < cell.y_max; ++y) {
-      for (std::uint32_t x = cell.x_min; x < cell.x_max; ++x) pixels_.push_back({x, y});
+      for (std::uint32_t x = cell.x_min; x < cell.x_max; ++x) {
+        pixels_.push_back({x, y, Sampler(context_.seed, x, y).pixel_seed});
+      }
     }
   }
   film.reset(sums, pixels_.size());

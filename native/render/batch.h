@@ -28,12 +28,17 @@ class BatchIntegrator {
  private:
   struct Pixel {
     std::uint32_t x, y;  // in the full frame
+    std::uint32_t seed;  // of its sampler
   };
   struct Path {
-    std::uint32_t x, y, pixel, sample;  // full-frame position, and index among the cells' pixels
+    std::uint32_t pixel, sample;  // index among the cells' pixels, and of the sample
   };
+  // The columns of a CameraBlock, and what they are padded by.
+  enum { kColumnX, kColumnY, kColumnSample, kColumnSeed, kColumns };
+  static constexpr std::uint32_t kPadding = 16;
 
   void start(std::size_t begin, std::size_t end, std::uint32_t first);
+  void start_camera_rays(std::uint32_t count);
   void shade();
   bool light(const Cancel& cancel);
   bool cast_block(const Cancel& cancel);
@@ -43,6 +48,7 @@ class BatchIntegrator {
   RenderContext context_;
   std::vector<Pixel> pixels_;
   std::vector<Path> paths_;
+  std::vector<std::uint32_t> starts_[kColumns];
   RayBatch camera_rays_;
   std::vector<Hit> hits_;
   std::vector<SurfacePoint> points_;

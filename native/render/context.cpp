@@ -20,10 +20,14 @@ float cosine_share(EnvironmentSampling sampling, bool uniform_world) {
   return 1.0f;
 }
 
-/// Light rays per camera sample when the settings leave it open. Four bring the most per second:
-/// the camera ray, its hit point and the film are shared by more, but their error at edges is not
-/// (figures in docs/performance.md). As one Sobol' set they are stratified over the whole pixel.
-constexpr std::uint32_t kAutomaticLightSamples = 4;
+/// Light rays per camera sample when the settings leave it open: those with which a picture is good
+/// soonest (figures in docs/performance.md). More of them share the camera ray and its hit point;
+/// fewer leave more camera samples, which edges need, and a map that is seen behind them.
+std::uint32_t automatic_light_samples(const RenderContext& context) {
+  const bool even_sky =
+      context.method == Method::kAmbientOcclusion || context.environment.width == 0;
+  return even_sky ? 8 : 4;
+}
 
 }  // namespace
 
@@ -47,7 +51,7 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.transparent = settings.film_transparent;
   context.seed = settings.seed;
   context.light_samples =
-      settings.light_samples > 0 ? settings.light_samples : kAutomaticLightSamples;
+      settings.light_samples > 0 ? settings.light_samples : automatic_light_samples(context);
   return context;
 }
 

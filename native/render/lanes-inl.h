@@ -115,12 +115,21 @@ HWY_INLINE Uint sobol_1_lanes(Uint v) {
   return hn::Xor(v, hn::And(hn::ShiftRight<1>(v), u32(0x55555555u)));
 }
 
+/// hash_bits(dimension + 0x9e3779b9), what Sampler makes of a dimension alone.
+HWY_INLINE std::uint32_t dimension_hash(std::uint32_t dimension) {
+  std::uint32_t x = dimension + 0x9e3779b9u;
+  x ^= x >> 16;
+  x *= 0x21f0aaadu;
+  x ^= x >> 15;
+  x *= 0xd35a2d97u;
+  return x ^ (x >> 15);
+}
+
 /// One pair of dimensions of the sampler of each lane's pixel; the seeds are worked out once.
 struct PairSampler {
-  /// `dimension_hash` is hash_bits(dimension + 0x9e3779b9).
-  HWY_INLINE PairSampler(Uint pixel_seed, std::uint32_t dimension_hash) {
-    const Uint sum = hn::Add(hn::Add(u32(dimension_hash), hn::ShiftLeft<6>(pixel_seed)),
-                             hn::ShiftRight<2>(pixel_seed));
+  HWY_INLINE PairSampler(Uint pixel_seed, std::uint32_t hash) {
+    const Uint sum =
+        hn::Add(hn::Add(u32(hash), hn::ShiftLeft<6>(pixel_seed)), hn::ShiftRight<2>(pixel_seed));
     order = hash_bits_lanes(hn::Xor(pixel_seed, sum));
     x = hash_bits_lanes(hn::Add(order, u32(1)));
     y = hash_bits_lanes(hn::Add(order, u32(2)));

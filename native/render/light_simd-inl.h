@@ -17,27 +17,19 @@ HWY_INLINE void store(const Vec3Lanes& v, float* const (&columns)[3], std::size_
   hn::StoreU(v.z, d, columns[2] + i);
 }
 
-/// hash_bits(vertex_dimension(0, kVertexLightDirection) + 0x9e3779b9)
-HWY_INLINE std::uint32_t light_dimension_hash() {
-  std::uint32_t x = static_cast<std::uint32_t>(kDimensionVertex) +
-                    static_cast<std::uint32_t>(kVertexLightDirection) + 0x9e3779b9u;
-  x ^= x >> 16;
-  x *= 0x21f0aaadu;
-  x ^= x >> 15;
-  x *= 0xd35a2d97u;
-  return x ^ (x >> 15);
-}
-
 /// Calls sample(normal, geometric normal, bits x, bits y, where the result goes) for all rays of
 /// all points; `prepare` works out what the rays of a point share from its normal.
 template <class Prepare, class Sample>
 HWY_INLINE void for_each_ray(const LightBlock& block, const Prepare& prepare,
                              const Sample& sample) {
   const TagU du;
+  const std::uint32_t light_hash =
+      dimension_hash(static_cast<std::uint32_t>(kDimensionVertex) +
+                     static_cast<std::uint32_t>(kVertexLightDirection));
   for (std::size_t p = 0; p < block.point_count; p += hn::Lanes(du)) {
     const Vec3Lanes normal = load(block.normal, p);
     const Vec3Lanes geometric = load(block.geometric_normal, p);
-    const PairSampler sampler(hn::LoadU(du, block.pixel_seed + p), light_dimension_hash());
+    const PairSampler sampler(hn::LoadU(du, block.pixel_seed + p), light_hash);
     const Uint first = hn::LoadU(du, block.first_index + p);
     const auto shared = prepare(normal);
     for (std::uint32_t j = 0; j < block.rays_per_point; ++j) {

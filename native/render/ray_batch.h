@@ -30,6 +30,16 @@ class RayBatch {
     ++count_;
   }
 
+  /// Makes room for `count` rays that are then written into the columns: nine of floats (origin,
+  /// direction, t_min, t_max, time) and three of words (mask, self_instance, self_primitive). The
+  /// columns are `padding` longer.
+  void resize(std::uint32_t count, std::uint32_t padding) {
+    if (floats_[0].size() < count + padding) reserve(std::size_t{count} + padding);
+    count_ = count;
+  }
+  float* floats(std::size_t column) { return floats_[column].data(); }
+  std::uint32_t* words(std::size_t column) { return words_[column].data(); }
+
   RaySpan span() const {
     return {floats_[0].data(),
             floats_[1].data(),

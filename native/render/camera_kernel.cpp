@@ -1,0 +1,33 @@
+#include "render/camera_kernel.h"
+
+#include <cstring>
+
+#include "bvh/traverse.h"
+#include "render/one_ray.h"
+
+namespace komorebi {
+namespace {
+
+void start_rays_scalar(const RenderContext& context, const CameraBlock& block) {
+  for (std::uint32_t i = 0; i < block.count; ++i) {
+    const Ray ray = start_ray(context, block.x[i], block.y[i], block.sample[i]);
+    for (int c = 0; c < 3; ++c) {
+      block.origin[c][i] = ray.origin[c];
+      block.direction[c][i] = ray.direction[c];
+    }
+    block.t_max[i] = ray.t_max;
+    block.time[i] = ray.time;
+  }
+}
+
+}  // namespace
+
+void start_rays(const RenderContext& context, const CameraBlock& block) {
+  const char* const name = active_instruction_set();
+  for (const CameraKernel* const* kernel = kSimdCameraKernels; *kernel != nullptr; ++kernel) {
+    if (std::strcmp((*kernel)->name, name) == 0) return (*kernel)->start_rays(context, block);
+  }
+  start_rays_scalar(context, block);
+}
+
+}  // namespace komorebi

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "render/context.h"
+
+namespace komorebi {
+
+/// Camera samples, and room for their rays, as arrays; padded to multiples of 16.
+struct CameraBlock {
+  std::uint32_t count = 0;
+  const std::uint32_t *x, *y, *sample;  ///< full-frame pixels
+  const std::uint32_t* pixel_seed;      ///< Sampler::pixel_seed
+  float *origin[3], *direction[3], *t_max, *time;
+};
+
+/// start_ray (one_ray.h) for many samples at once, compiled for one instruction set; equal to it in
+/// every bit. A camera ray starts at t_min = 0.
+struct CameraKernel {
+  const char* name;
+  void (*start_rays)(const RenderContext& context, const CameraBlock& block);
+};
+
+/// Null-terminated, best first.
+extern const CameraKernel* const kSimdCameraKernels[];
+
+/// The same in the active instruction set (bvh/traverse.h).
+void start_rays(const RenderContext& context, const CameraBlock& block);
+
+}  // namespace komorebi

@@ -1,0 +1,99 @@
+// start_ray (one_ray.h) for many samples, a lane a sample, to the bit; see lanes-inl.h.
+
+HWY_BEFORE_NAMESPACE();
+namespace komorebi {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// sample_filter (core/filter.h) for one coordinate.
+HWY_INLINE Float sample_filter_lanes(const FilterView& filter, Float u) {
+  const Float s = (f32(2.0f) * u - f32(1.0f)) + f32(5.9604644775390625e-8f);
+  const Float radius = f32(filter.radius);
+  if (filter.cells == 0) return radius * s;
+  const Float target = hn::Abs(s);
+  const auto gather = [](const float* table, Int i)
+                          HWY_ATTR { return hn::GatherIndex(TagF(), table, i); };
+  Int first = hn::Zero(TagI());
+  for (std::uint32_t count = filter.cells; count > 1;) {
+    const std::uint32_t half = count / 2;
+    const Int middle = hn::Add(first, hn::Set(TagI(), static_cast<std::int32_t>(half)));
+    const auto below = hn::RebindMask(TagI(), hn::Le(gather(filter.cdf, middle), target));
+    first = hn::IfThenElse(below, middle, first);
+    count -= half;
+  }
+  const Int next = hn::Add(first, hn::Set(TagI(), 1));
+  const Float begin = gather(filter.cdf, first);
+  const Float mass = gather(filter.cdf, next) - begin;
+  const Float rest = target - begin;
+  const Float inside = hn::IfThenElse(hn::Gt(mass, rest), rest / mass, f32(kOneMinusEpsilon));
+  const Float t =
+      sample_linear_lanes(inside, gather(filter.density, first), gather(filter.density, next));
+  const Float x =
+      radius * ((hn::ConvertTo(TagF(), first) + t) / f32(static_cast<float>(filter.cells)));
+  return hn::IfThenElse(hn::Lt(s, f32(0.0f)), hn::Neg(x), x);
+}
+
+struct Vec3dLanes {
+  Double x, y, z;
+};
+
+HWY_INLINE Vec3dLanes spread(const double* v) {
+  return {f64(v[0]), f64(v[1]), f64(v[2])};
+}
+HWY_INLINE Vec3dLanes sum(const Vec3dLanes& a, const Vec3dLanes& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+HWY_INLINE Vec3dLanes scaled(Double s, const Vec3dLanes& v) {
+  return {s * v.x, s * v.y, s * v.z};
+}
+
+HWY_INLINE void store(Float v, float* to) {
+  hn::StoreU(v, TagF(), to);
+}
+
+void start_rays(const RenderContext& context, const CameraBlock& block) {
+  const TagU du;
+  const CameraView& camera = context.camera;
+  const Vec3dLanes origin = spread(&camera.origin.x), direction = spread(&camera.direction.x);
+  const Vec3dLanes per_x = spread(&camera.per_x.x), per_y = spread(&camera.per_y.x);
+  const bool orthographic = camera.kind == CameraKind::kOrthographic;
+  for (std::size_t i = 0; i < block.count; i += hn::Lanes(du)) {
+    const Uint seed = hn::LoadU(du, block.pixel_seed + i);
+    const Uint sample = hn::LoadU(du, block.sample + i);
+    const PairSampler pixel(seed, dimension_hash(kDimensionPixel));
+    const PairSampler shutter(seed, dimension_hash(kDimensionTime));
+    Uint u, v, time, unused;
+    pixel.bits(sample, u, v);
+    shutter.bits(sample, time, unused);
+
+    const Float half = f32(0.5f);
+    const Float film_x = (to_float(hn::LoadU(du, block.x + i)) + half) +
+                         sample_filter_lanes(context.filter, to_unit_float_lanes(u));
+    const Float film_y = (to_float(hn::LoadU(du, block.y + i)) + half) +
+                         sample_filter_lanes(context.filter, to_unit_float_lanes(v));
+    const Double x = to_double(film_x) - f64(camera.film_center_x);
+    const Double y = to_double(film_y) - f64(camera.film_center_y);
+    const Vec3dLanes shift = sum(scaled(x, per_x), scaled(y, per_y));
+    const Vec3dLanes eye = orthographic ? sum(origin, shift) : origin;
+    const Vec3dLanes along = orthographic ? direction : sum(direction, shift);
+    const Double length = hn::Sqrt((along.x * along.x + along.y * along.y) + along.z * along.z);
+    const Vec3dLanes start = sum(eye, scaled(f64(camera.clip_start), along));
+    store(to_float(start.x), block.origin[0] + i);
+    store(to_float(start.y), block.origin[1] + i);
+    store(to_float(start.z), block.origin[2] + i);
+    store(to_float(along.x / length), block.direction[0] + i);
+    store(to_float(along.y / length), block.direction[1] + i);
+    store(to_float(along.z / length), block.direction[2] + i);
+    store(to_float(f64(camera.clip_end - camera.clip_start) * length), block.t_max + i);
+    store(to_unit_float_lanes(time), block.time + i);
+  }
+}
+
+}  // namespace
+
+extern const CameraKernel kCameraKernel;
+constexpr CameraKernel kCameraKernel = {&HWY_STR(HWY_NAMESPACE)[2], &start_rays};  // N_AVX2: "AVX2"
+
+}  // namespace HWY_NAMESPACE
+}  // namespace komorebi
+HWY_AFTER_NAMESPACE();
