@@ -21,13 +21,9 @@ float cosine_share(EnvironmentSampling sampling, bool uniform_world) {
 }
 
 /// Light rays per camera sample when the settings leave it open: those with which a picture is good
-/// soonest (figures in docs/performance.md). More of them share the camera ray and its hit point;
-/// fewer leave more camera samples, which edges need, and a map that is seen behind them.
-std::uint32_t automatic_light_samples(const RenderContext& context) {
-  const bool even_sky =
-      context.method == Method::kAmbientOcclusion || context.environment.width == 0;
-  return even_sky ? 8 : 4;
-}
+/// soonest (figures in docs/performance.md). More of them share the camera ray, its hit point and
+/// the tracer's packets; fewer leave more camera samples, which edges need, and a map seen behind.
+constexpr std::uint32_t kAutomaticLightSamples = 8;
 
 }  // namespace
 
@@ -51,7 +47,7 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.transparent = settings.film_transparent;
   context.seed = settings.seed;
   context.light_samples =
-      settings.light_samples > 0 ? settings.light_samples : automatic_light_samples(context);
+      settings.light_samples > 0 ? settings.light_samples : kAutomaticLightSamples;
   return context;
 }
 
