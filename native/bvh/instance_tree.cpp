@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "bvh/collapse.h"
+#include "bvh/wide_tree.h"
 #include "core/local_ray.h"
 
 namespace komorebi {
@@ -59,24 +59,13 @@ void place_instance(InstanceView& instance, const Aabb& local_bounds) {
 
 InstanceTree build_instance_tree(std::span<const Aabb> world_boxes, Builder builder,
                                  ThreadPool& pool, const Cancel& cancel) {
-  std::vector<Aabb> boxes;
-  std::vector<std::uint32_t> source;
-  for (std::size_t i = 0; i < world_boxes.size(); ++i) {
-    if (world_boxes[i].is_empty()) continue;
-    boxes.push_back(world_boxes[i]);
-    source.push_back(static_cast<std::uint32_t>(i));
-  }
-  const Topology topology = build_topology(boxes, builder, pool, cancel);
-  WideTree wide = collapse(topology, boxes, {}, pool, cancel);
-
+  const Items items{{}, {}, world_boxes, {1, kNone}};
+  WideTree wide = build_wide_tree(items, builder, pool, cancel);
   InstanceTree tree;
   tree.nodes = std::move(wide.nodes);
+  tree.leaf2instance = std::move(wide.leaves);
   tree.depth = wide.depth;
-  tree.leaf2instance.reserve(wide.leaves.size());
-  for (const LeafRange& leaf : wide.leaves) {
-    tree.leaf2instance.push_back(source[topology.order[leaf.first]]);
-  }
-  for (const Aabb& box : boxes) tree.bounds = united(tree.bounds, box);
+  tree.bounds = wide.bounds;
   return tree;
 }
 

@@ -6,13 +6,15 @@
 #include "bvh/topology.h"
 #include "bvh/wide_node.h"
 #include "core/scene_view.h"
+#include "parallel/array.h"
+#include "parallel/thread_pool.h"
 
 namespace komorebi {
 
 /// The tree over a scene's instances; leaves are entries of leaf2instance.
 struct InstanceTree {
-  std::vector<WideNode> nodes;
-  std::vector<std::uint32_t> leaf2instance;
+  Array<WideNode> nodes;
+  Array<std::uint32_t> leaf2instance;
   std::uint32_t depth = 0;
   Aabb bounds;
 

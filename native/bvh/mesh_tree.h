@@ -1,22 +1,23 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "bvh/topology.h"
 #include "bvh/triangle_cluster.h"
 #include "bvh/wide_node.h"
 #include "core/scene_view.h"
+#include "parallel/array.h"
+#include "parallel/thread_pool.h"
 
 namespace komorebi {
 
 /// A mesh's triangles as traversal reads them: wide nodes whose leaves are clusters of up to eight
 /// triangles. Nothing else of the mesh is read to find a hit. Immutable after the build.
 struct MeshTree {
-  std::vector<WideNode> nodes;
+  Array<WideNode> nodes;
   /// Cluster records (bvh/triangle_cluster.h), one behind the other, and kClusterSlack bytes. A
   /// leaf is counted in kClusterUnit from the start.
-  std::vector<std::byte> clusters;
+  Array<std::byte> clusters;
   std::uint32_t depth = 0;
   /// Triangles without area: they are in no leaf and never hit, but keep their index.
   std::uint32_t degenerate_count = 0;

@@ -1,42 +1,24 @@
 #include "bvh/morton_grid.h"
 
 #include <algorithm>
-#include <mutex>
 #include <vector>
 
 namespace komorebi {
 namespace {
 
-constexpr std::size_t kSamples = 1024;
 constexpr int kNarrowBits = 10, kWideBits = 21;
 
 float longest_side(const Aabb& box) {
   return max_of(max_of(box.hi.x - box.lo.x, box.hi.y - box.lo.y), box.hi.z - box.lo.z);
 }
 
-Aabb bounds_of_centres(std::span<const Aabb> boxes, ThreadPool& pool, const Cancel& cancel) {
-  Aabb all;
-  std::mutex mutex;
-  pool.for_each_chunk(boxes.size(), 65536, [&](std::size_t begin, std::size_t end) {
-    if (cancel.raised()) return;
-    Aabb part;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3 c = centre(boxes[i]);
-      part = united(part, Aabb{c, c});
-    }
-    const std::lock_guard lock(mutex);
-    all = united(all, part);  // min and max: the order does not show
-  });
-  return all;
-}
-
 /// The middle 15/16 of the sampled centres on each axis, grown by its own longest side.
-Aabb core_of_sample(std::span<const Aabb> boxes, std::size_t stride) {
+Aabb core_of_sample(std::span<const Aabb> sample) {
   Aabb middle;
   std::vector<float> values;
   for (int axis = 0; axis < 3; ++axis) {
     values.clear();
-    for (std::size_t i = 0; i < boxes.size(); i += stride) values.push_back(centre(boxes[i])[axis]);
+    for (const Aabb& box : sample) values.push_back(centre(box)[axis]);
     std::sort(values.begin(), values.end());
     middle.lo[axis] = values[values.size() / 32];
     middle.hi[axis] = values[values.size() - 1 - values.size() / 32];
@@ -67,23 +49,19 @@ std::uint64_t MortonGrid::code_63(const Aabb& box) const {
   return in_core(p) ? code : code | (std::uint64_t{1} << 63);
 }
 
-MortonGrid choose_morton_grid(std::span<const Aabb> boxes, ThreadPool& pool, const Cancel& cancel) {
+MortonGrid choose_morton_grid(const Aabb& all, std::span<const Aabb> sample) {
   MortonGrid grid;
-  if (boxes.empty()) return grid;
-  const Aabb all = bounds_of_centres(boxes, pool, cancel);
-  const std::size_t stride = std::max<std::size_t>(1, boxes.size() / kSamples);
-  grid.core = core_of_sample(boxes, stride);
+  if (sample.empty()) return grid;
+  grid.core = core_of_sample(sample);
   // An ordinary mesh fills its bounds: one grid then, which is the plain linear BVH.
   const float core_side = longest_side(grid.core);
-  if (!(core_side > 0.0f) || !(longest_side(all) > 2.0f * core_side)) grid.core = all;
+  grid.is_one = !(core_side > 0.0f) || !(longest_side(all) > 2.0f * core_side);
+  if (grid.is_one) grid.core = all;
 
   const float cell = longest_side(grid.core) / static_cast<float>(1 << kNarrowBits);
-  std::size_t samples = 0, small = 0;
-  for (std::size_t i = 0; i < boxes.size(); i += stride) {
-    ++samples;
-    if (longest_side(boxes[i]) < 0.5f * cell) ++small;
-  }
-  grid.wide = small * 64 > samples;
+  std::size_t small = 0;
+  for (const Aabb& box : sample) small += longest_side(box) < 0.0625f * cell ? 1u : 0u;
+  grid.wide = small * 64 > sample.size();
   const int bits = grid.wide ? kWideBits : kNarrowBits;
   grid.core_grid = CellGrid(grid.core, bits);
   grid.outer_grid = CellGrid(all, bits);

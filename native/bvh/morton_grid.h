@@ -4,8 +4,6 @@
 
 #include "core/aabb.h"
 #include "core/morton.h"
-#include "parallel/cancel.h"
-#include "parallel/thread_pool.h"
 
 namespace komorebi {
 
@@ -36,7 +34,8 @@ struct MortonGrid {
   Aabb core;
   CellGrid core_grid;
   CellGrid outer_grid;
-  bool wide = false;  ///< 63-bit codes; 30 otherwise
+  bool wide = false;    ///< 63-bit codes; 30 otherwise
+  bool is_one = false;  ///< nothing lies outside the core
 
   bool in_core(const Vec3& p) const {
     return p.x >= core.lo.x && p.y >= core.lo.y && p.z >= core.lo.z && p.x <= core.hi.x &&
@@ -46,9 +45,9 @@ struct MortonGrid {
   std::uint64_t code_63(const Aabb& box) const;  ///< 64 bits
 };
 
-/// Looks at the extent of all centres and at a sample of the boxes. 63-bit codes are chosen when
-/// more than one box in 64 is smaller than half a 30-bit cell: then many would share a cell, and
-/// their order, and so the tree, would be arbitrary there.
-MortonGrid choose_morton_grid(std::span<const Aabb> boxes, ThreadPool& pool, const Cancel& cancel);
+/// From the extent of all centres (or more) and a sample of the boxes. 63-bit codes are chosen when
+/// more than one box in 64 is smaller than 1/16 of a 30-bit cell: then hundreds may share a cell,
+/// more than a builder parts by other means.
+MortonGrid choose_morton_grid(const Aabb& all, std::span<const Aabb> sample);
 
 }  // namespace komorebi

@@ -1,7 +1,6 @@
 #include "bvh/quantise.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace komorebi {
 namespace {
@@ -29,19 +28,6 @@ struct Grid {
   }
 };
 
-/// The smallest step for which the planes reach from lo to hi.
-std::uint8_t choose_exponent(float lo, float hi) {
-  const double least = (double(hi) - double(lo)) / kLast;
-  int exponent = 1;
-  if (least >= 0x1p-126) exponent = std::min(std::ilogb(least) + 127, 254);
-  const auto reaches = [&] {
-    const Grid grid{lo, std::bit_cast<float>(static_cast<std::uint32_t>(exponent) << 23)};
-    return grid.at(kLast) >= hi;
-  };
-  while (exponent < 254 && !reaches()) ++exponent;
-  return static_cast<std::uint8_t>(exponent);
-}
-
 }  // namespace
 
 void quantise(const Aabb* boxes, int count, WideNode& node) {
@@ -49,7 +35,7 @@ void quantise(const Aabb* boxes, int count, WideNode& node) {
   for (int i = 0; i < count; ++i) all = united(all, boxes[i]);
   for (int axis = 0; axis < 3; ++axis) {
     node.origin[axis] = all.lo[axis];
-    node.exponent[axis] = choose_exponent(all.lo[axis], all.hi[axis]);
+    node.exponent[axis] = choose_grid_exponent(all.lo[axis], all.hi[axis]);
     const Grid grid{node.origin[axis], node.step(axis)};
     for (int i = 0; i < kWidth; ++i) {
       const bool used = i < count;

@@ -4,31 +4,46 @@
 
 namespace komorebi {
 
+namespace {
+
+struct Name {
+  Builder builder;
+  const char* name;
+};
+constexpr Name kNames[] = {{Builder::kLinear, "LINEAR"},
+                           {Builder::kSah, "SAH"},
+                           {Builder::kPrincipalAxis, "PRINCIPAL_AXIS"},
+                           {Builder::kList, "LIST"}};
+
+}  // namespace
+
 Builder builder_from_name(const std::string& name) {
-  if (name == "LINEAR") return Builder::kLinear;
-  if (name == "PRINCIPAL_AXIS") return Builder::kPrincipalAxis;
-  if (name == "LIST") return Builder::kList;
+  for (const Name& known : kNames) {
+    if (name == known.name) return known.builder;
+  }
   throw std::invalid_argument("there is no tree builder \"" + name +
-                              "\" (LINEAR, PRINCIPAL_AXIS or LIST)");
+                              "\" (LINEAR, SAH, PRINCIPAL_AXIS or LIST)");
 }
 
-Topology build_topology(std::span<const Aabb> boxes, Builder builder, ThreadPool& pool,
-                        const Cancel& cancel) {
+const char* builder_name(Builder builder) {
+  for (const Name& known : kNames) {
+    if (builder == known.builder) return known.name;
+  }
+  return "";
+}
+
+Topology build_topology(std::span<const Aabb> boxes, Builder builder, const Cancel& cancel) {
   if (boxes.size() > kMaxItems) {
     throw std::invalid_argument("a tree holds at most " + std::to_string(kMaxItems) +
                                 " items, not " + std::to_string(boxes.size()));
   }
   Topology topology;
-  switch (builder) {
-    case Builder::kLinear:
-      topology = build_linear(boxes, pool, cancel);
-      break;
-    case Builder::kPrincipalAxis:
-      topology = build_principal_axis(boxes, cancel);
-      break;
-    case Builder::kList:
-      topology = build_list(boxes);
-      break;
+  if (builder == Builder::kPrincipalAxis) {
+    topology = build_principal_axis(boxes, cancel);
+  } else if (builder == Builder::kList) {
+    topology = build_list(boxes);
+  } else {
+    throw std::invalid_argument(std::string(builder_name(builder)) + " is not built by this");
   }
   check(cancel);
   if (topology.depth > kMaxDepth) {

@@ -7,19 +7,21 @@
 
 #include "core/aabb.h"
 #include "parallel/cancel.h"
-#include "parallel/thread_pool.h"
 
 namespace komorebi {
 
-/// How a tree is built. All three see boxes only and give the same kind of tree.
+/// How a tree is built. All give the same kind of tree, and so the same hits.
 enum class Builder {
-  kLinear,         ///< Morton order, every node independent (bvh/build_linear.cpp): the engine
+  kLinear,         ///< Morton order (bvh/grow_linear.cpp): at once
+  kSah,            ///< surface-area heuristic (bvh/grow_sah.cpp): for many rays
   kPrincipalAxis,  ///< top-down, split across the longest spread (bvh/build_principal_axis.cpp)
   kList,           ///< the given order, boxes that cull nothing (bvh/build_list.cpp): for tests
 };
 
-/// "LINEAR", "PRINCIPAL_AXIS", "LIST"; anything else is a std::invalid_argument that names it.
+/// "LINEAR", "SAH", "PRINCIPAL_AXIS", "LIST"; anything else is a std::invalid_argument that names
+/// it.
 Builder builder_from_name(const std::string& name);
+const char* builder_name(Builder builder);
 
 /// Deepest topology that any builder may return: 64 bits of code and 32 of index. Wide trees are
 /// never deeper, so this bounds every traversal stack.
@@ -40,12 +42,11 @@ struct Topology {
   std::uint32_t depth = 0;     ///< inner nodes on the longest way down, at most kMaxDepth
 };
 
-/// Builds over `boxes` (none empty; not-a-number is harmless but useless).
-/// @throws Cancelled, std::invalid_argument for more than kMaxItems boxes.
-Topology build_topology(std::span<const Aabb> boxes, Builder builder, ThreadPool& pool,
-                        const Cancel& cancel);
+/// Builds over `boxes` (none empty; not-a-number is harmless but useless) by kPrincipalAxis or
+/// kList, which see boxes alone; the engine's own builders make their trees without this form.
+/// @throws Cancelled, std::invalid_argument for more than kMaxItems boxes or another builder.
+Topology build_topology(std::span<const Aabb> boxes, Builder builder, const Cancel& cancel);
 
-Topology build_linear(std::span<const Aabb> boxes, ThreadPool& pool, const Cancel& cancel);
 Topology build_principal_axis(std::span<const Aabb> boxes, const Cancel& cancel);
 Topology build_list(std::span<const Aabb> boxes);
 

@@ -8,17 +8,11 @@
 namespace komorebi {
 namespace {
 
-constexpr unsigned kDigitBits = 8;
-constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+constexpr unsigned kMostDigitBits = 11;
 constexpr std::size_t kMinimumShare = 8192;  ///< items below which a worker does not pay
 constexpr std::size_t kPollEvery = 65536;    ///< items between two looks at the cancel flag
 
-using Histogram = std::array<std::uint32_t, kDigits>;
-
-template <class Key>
-std::size_t digit(Key key, unsigned shift) {
-  return static_cast<std::size_t>((key >> shift) & Key{kDigits - 1});
-}
+using Histogram = std::array<std::uint32_t, std::size_t{1} << kMostDigitBits>;
 
 /// Calls body(begin, end) for pieces of [begin, end), polling between them.
 template <class Body>
@@ -30,7 +24,7 @@ void poll_through(std::size_t begin, std::size_t end, const Cancel& cancel, Body
 
 template <class Key>
 void sort(std::span<KeyIndex<Key>> items, std::span<KeyIndex<Key>> scratch, ThreadPool& pool,
-          const Cancel& cancel) {
+          const Cancel& cancel, unsigned bits) {
   const std::size_t count = items.size();
   if (scratch.size() < count) throw std::invalid_argument("radix_sort: scratch is too small");
   const auto workers =
@@ -39,12 +33,19 @@ void sort(std::span<KeyIndex<Key>> items, std::span<KeyIndex<Key>> scratch, Thre
 
   std::vector<Histogram> places(workers);
   std::span<KeyIndex<Key>> from = items, to = scratch;
-  for (unsigned shift = 0; shift < 8 * sizeof(Key); shift += kDigitBits) {
+  const unsigned passes = (bits + kMostDigitBits - 1) / kMostDigitBits;
+  const unsigned digit_bits = passes > 0 ? (bits + passes - 1) / passes : 0;
+  const std::size_t digits = std::size_t{1} << digit_bits;
+  for (unsigned pass = 0; pass < passes; ++pass) {
+    const unsigned shift = pass * digit_bits;
+    const auto digit = [&](Key key) {
+      return static_cast<std::size_t>(key >> shift) & (digits - 1);
+    };
     pool.run(workers, [&](unsigned worker) {
       Histogram& histogram = places[worker];
-      histogram.fill(0);
+      std::fill_n(histogram.begin(), digits, 0u);
       poll_through(share(worker), share(worker + 1), cancel, [&](std::size_t i, std::size_t end) {
-        for (; i < end; ++i) ++histogram[digit(from[i].key, shift)];
+        for (; i < end; ++i) ++histogram[digit(from[i].key)];
       });
     });
     if (cancel.raised()) throw Cancelled();
@@ -52,7 +53,7 @@ void sort(std::span<KeyIndex<Key>> items, std::span<KeyIndex<Key>> scratch, Thre
     // Digit by digit, and within a digit worker by worker: that is what keeps the order.
     std::uint32_t place = 0;
     bool all_agree = false;
-    for (std::size_t d = 0; d < kDigits; ++d) {
+    for (std::size_t d = 0; d < digits; ++d) {
       const std::uint32_t before = place;
       for (Histogram& histogram : places) {
         const std::uint32_t size = histogram[d];
@@ -66,7 +67,7 @@ void sort(std::span<KeyIndex<Key>> items, std::span<KeyIndex<Key>> scratch, Thre
     pool.run(workers, [&](unsigned worker) {
       Histogram& next = places[worker];
       poll_through(share(worker), share(worker + 1), cancel, [&](std::size_t i, std::size_t end) {
-        for (; i < end; ++i) to[next[digit(from[i].key, shift)]++] = from[i];
+        for (; i < end; ++i) to[next[digit(from[i].key)]++] = from[i];
       });
     });
     if (cancel.raised()) throw Cancelled();
@@ -79,15 +80,15 @@ void sort(std::span<KeyIndex<Key>> items, std::span<KeyIndex<Key>> scratch, Thre
 }  // namespace
 
 void radix_sort(std::span<KeyIndex<std::uint32_t>> items,
-                std::span<KeyIndex<std::uint32_t>> scratch, ThreadPool& pool,
-                const Cancel& cancel) {
-  sort(items, scratch, pool, cancel);
+                std::span<KeyIndex<std::uint32_t>> scratch, ThreadPool& pool, const Cancel& cancel,
+                unsigned bits) {
+  sort(items, scratch, pool, cancel, bits);
 }
 
 void radix_sort(std::span<KeyIndex<std::uint64_t>> items,
-                std::span<KeyIndex<std::uint64_t>> scratch, ThreadPool& pool,
-                const Cancel& cancel) {
-  sort(items, scratch, pool, cancel);
+                std::span<KeyIndex<std::uint64_t>> scratch, ThreadPool& pool, const Cancel& cancel,
+                unsigned bits) {
+  sort(items, scratch, pool, cancel, bits);
 }
 
 }  // namespace komorebi

@@ -16,12 +16,15 @@ struct KeyIndex {
 };
 
 /// Sorts by key, items with equal keys keeping their order: the result is the same for any number
-/// of threads. Least significant digit first, eight bits a pass; passes in which all keys agree
-/// are left out. `scratch` has the size of `items`; at most 2³² − 1 items.
+/// of threads. Least significant digit first, at most eleven bits a pass; passes in which all keys
+/// agree are left out. `scratch` has the size of `items`; at most 2³² − 1 items.
+/// @param bits  of the keys; those above are null
 /// @throws Cancelled; `items` is then in any order.
 void radix_sort(std::span<KeyIndex<std::uint32_t>> items,
-                std::span<KeyIndex<std::uint32_t>> scratch, ThreadPool& pool, const Cancel& cancel);
+                std::span<KeyIndex<std::uint32_t>> scratch, ThreadPool& pool, const Cancel& cancel,
+                unsigned bits = 32);
 void radix_sort(std::span<KeyIndex<std::uint64_t>> items,
-                std::span<KeyIndex<std::uint64_t>> scratch, ThreadPool& pool, const Cancel& cancel);
+                std::span<KeyIndex<std::uint64_t>> scratch, ThreadPool& pool, const Cancel& cancel,
+                unsigned bits = 64);
 
 }  // namespace komorebi

@@ -161,8 +161,8 @@ face_offsets: int32 [F + 1], first corner of each face. tri2corner int32 [T, 3] 
 int32 [T]: Blender's loop triangles; None if every face has three or four corners.
 corner_normals: float32 [C, 3], or vertex_normals: float32 [V, 3], unit; a row that is not finite
 counts as none, and without both every face is flat. smooth_faces: bool [F], None if all are
-smooth. face_materials: int32 [F]. builder: LINEAR, PRINCIPAL_AXIS or LIST. same_geometry: a mesh
-made from the same positions, corners and triangles, whose tree is shared then.
+smooth. face_materials: int32 [F]. builder: LINEAR, SAH, PRINCIPAL_AXIS or LIST.
+same_geometry: a mesh made from the same positions, corners and triangles, whose tree is shared then.
 Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
            py::arg("name"), py::arg("positions"), py::arg("corner_verts"), py::arg("face_offsets"),
            py::kw_only(), py::arg("tri2corner") = py::none(), py::arg("tri2face") = py::none(),

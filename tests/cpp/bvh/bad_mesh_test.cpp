@@ -15,7 +15,8 @@ using testing::RayMaker;
 using testing::TestScene;
 using testing::TriangleMesh;
 
-constexpr Builder kBuilders[] = {Builder::kLinear, Builder::kPrincipalAxis, Builder::kList};
+constexpr Builder kBuilders[] = {Builder::kLinear, Builder::kSah, Builder::kPrincipalAxis,
+                                 Builder::kList};
 
 TriangleMesh soup(const std::vector<Vec3>& corners) {
   TriangleMesh mesh;

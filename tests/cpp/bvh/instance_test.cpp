@@ -89,7 +89,8 @@ Mat3d random_matrix(std::mt19937& random, double flatten) {
 }
 
 TEST(Instances, MirroredShearedAndFlattenedAgreeWithBruteForce) {
-  for (const Builder builder : {Builder::kLinear, Builder::kPrincipalAxis, Builder::kList}) {
+  for (const Builder builder :
+       {Builder::kLinear, Builder::kSah, Builder::kPrincipalAxis, Builder::kList}) {
     TestScene scene(2);
     scene.add_mesh(ball(8), builder);
     scene.add_mesh(TriangleMesh{}, builder);

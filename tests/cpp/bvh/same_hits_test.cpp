@@ -83,7 +83,8 @@ TEST_P(SameHits, OnMesh) {
     const TriangleMesh mesh = testing::scaled(original, scale);
     Answers searched, reference;
     RayList rays;
-    for (const Builder builder : {Builder::kLinear, Builder::kPrincipalAxis, Builder::kList}) {
+    for (const Builder builder :
+         {Builder::kLinear, Builder::kSah, Builder::kPrincipalAxis, Builder::kList}) {
       if (triangles > kBigMesh && scale != 1.0f && builder != Builder::kLinear) continue;
       TestScene scene(2);
       scene.add_mesh(mesh, builder);

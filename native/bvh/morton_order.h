@@ -1,0 +1,54 @@
+#pragma once
+
+#include <vector>
+
+#include "bvh/items.h"
+#include "bvh/morton_grid.h"
+#include "parallel/cancel.h"
+#include "parallel/radix_sort.h"
+#include "parallel/scratch.h"
+#include "parallel/thread_pool.h"
+
+namespace komorebi {
+
+/// Items along the Morton curve, those that no ray can meet left out.
+struct MortonOrder {
+  /// The first `count` are sorted by (code, index). Only one of the two has anything in it.
+  Scratch<KeyIndex<std::uint32_t>> narrow;
+  Scratch<KeyIndex<std::uint64_t>> wide;
+  std::uint32_t count = 0;
+  std::uint32_t left_out = 0;
+  float sample_area = 0.0f;   ///< median half area of the boxes looked at
+  float largest_side = 0.0f;  ///< of everything
+
+  std::uint64_t code(std::size_t i) const { return wide.size() > 0 ? wide[i].key : narrow[i].key; }
+  std::uint32_t item(std::size_t i) const {
+    return wide.size() > 0 ? wide[i].index : narrow[i].index;
+  }
+};
+
+/// @throws Cancelled
+MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& cancel);
+
+/// Runs of sorted items that share a prefix of their codes, none longer than asked for, and the
+/// radix tree over them (Karras 2012): a node's codes part in the highest bit in which they differ,
+/// equal codes in the middle, which bounds the depth.
+struct RunTree {
+  struct Run {
+    std::uint32_t first, count;
+  };
+  struct Node {
+    std::uint32_t first;  ///< left child, the right one follows; or the run
+    bool is_run;
+  };
+  std::vector<Run> runs;
+  std::vector<Node> nodes;  ///< the first is the root
+
+  void cut(const MortonOrder& order, std::uint32_t most);
+
+ private:
+  void cut(const MortonOrder& order, std::uint32_t most, std::size_t node, std::uint32_t first,
+           std::uint32_t last);
+};
+
+}  // namespace komorebi

@@ -1,0 +1,152 @@
+// Boxes and leaf tests in lanes. Included once per instruction set (no include guard), like
+// traverse_simd-inl.h.
+
+HWY_BEFORE_NAMESPACE();
+namespace komorebi {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Float4 = hn::FixedTag<float, 4>;
+using Vector4 = hn::Vec<Float4>;
+
+/// A box as eight lanes: low corner, negated high corner, each with a lane to spare that is zero.
+#if HWY_MAX_BYTES >= 32
+using Float8 = hn::FixedTag<float, 8>;
+using Lanes = hn::Vec<Float8>;
+
+HWY_INLINE Lanes load_box(const float* box) {
+  return hn::Load(Float8(), box);
+}
+HWY_INLINE void store_box(Lanes box, float* to) {
+  hn::Store(box, Float8(), to);
+}
+HWY_INLINE Lanes merge(Lanes a, Lanes b) {
+  return hn::Min(a, b);
+}
+HWY_INLINE Vector4 low(Lanes box) {
+  return hn::LowerHalf(Float4(), box);
+}
+HWY_INLINE Vector4 minus_high(Lanes box) {
+  return hn::UpperHalf(Float4(), box);
+}
+HWY_INLINE Lanes make_box(Vector4 lo, Vector4 minus_hi) {
+  return hn::Combine(Float8(), minus_hi, lo);
+}
+HWY_INLINE Lanes choose(bool first, Lanes a, Lanes b) {
+  const auto bits = hn::Set(hn::RebindToSigned<Float8>(), first ? -1 : 0);
+  return hn::IfThenElse(hn::MaskFromVec(hn::BitCast(Float8(), bits)), a, b);
+}
+#else
+struct Lanes {
+  Vector4 lo, minus_hi;
+};
+
+HWY_INLINE Lanes load_box(const float* box) {
+  return {hn::Load(Float4(), box), hn::Load(Float4(), box + 4)};
+}
+HWY_INLINE void store_box(Lanes box, float* to) {
+  hn::Store(box.lo, Float4(), to);
+  hn::Store(box.minus_hi, Float4(), to + 4);
+}
+HWY_INLINE Lanes merge(Lanes a, Lanes b) {
+  return {hn::Min(a.lo, b.lo), hn::Min(a.minus_hi, b.minus_hi)};
+}
+HWY_INLINE Vector4 low(Lanes box) {
+  return box.lo;
+}
+HWY_INLINE Vector4 minus_high(Lanes box) {
+  return box.minus_hi;
+}
+HWY_INLINE Lanes make_box(Vector4 lo, Vector4 minus_hi) {
+  return {lo, minus_hi};
+}
+HWY_INLINE Lanes choose(bool first, Lanes a, Lanes b) {
+  const auto bits = hn::Set(hn::RebindToSigned<Float4>(), first ? -1 : 0);
+  const auto mask = hn::MaskFromVec(hn::BitCast(Float4(), bits));
+  return {hn::IfThenElse(mask, a.lo, b.lo), hn::IfThenElse(mask, a.minus_hi, b.minus_hi)};
+}
+#endif
+
+HWY_INLINE Lanes empty_lanes() {
+  const auto most = hn::Set(Float4(), kFloatMax);
+  return make_box(most, most);
+}
+
+/// Half the surface of a box that is not empty, in units of 1 / scale².
+HWY_INLINE float area_of(Lanes box, float scale) {
+  const auto sides = hn::Mul(hn::Neg(hn::Add(low(box), minus_high(box))), hn::Set(Float4(), scale));
+  const auto next = hn::Mul(sides, hn::Shuffle0321(sides));   // xy yz .. ..
+  const auto other = hn::Mul(sides, hn::Shuffle1032(sides));  // xz .. .. ..
+  const auto sum = hn::Add(next, other);
+  return hn::GetLane(hn::Add(sum, hn::Shuffle2301(sum)));
+}
+
+/// The centre; halved before the sum, so that it cannot overflow.
+HWY_INLINE Vector4 centre_of(Lanes box) {
+  const auto half = hn::Set(Float4(), 0.5f);
+  return hn::Sub(hn::Mul(low(box), half), hn::Mul(minus_high(box), half));
+}
+
+/// The box of one point.
+HWY_INLINE Lanes point_box(Vector4 p) {
+  return make_box(p, hn::Neg(p));
+}
+
+HWY_INLINE void write_node(BinaryNode& node, Lanes box, std::uint32_t first, std::uint32_t info) {
+  store_box(box, node.lo);
+  node.first = first;
+  node.info = info;
+}
+
+/// How many different vertices the given triangles have; 0 for more than `most` (≤ 8).
+HWY_INLINE std::uint32_t few_vertices(const Treelet& t, const std::uint32_t* ids,
+                                      std::uint32_t count, std::uint32_t most) {
+  // Distinct hashes are distinct vertices: most sets with too many are seen here.
+  std::uint64_t seen = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t* corner = t.corner[ids[i]];
+    for (int k = 0; k < 3; ++k) seen |= std::uint64_t{1} << ((corner[k] * 0x9E3779B1u) >> 26);
+  }
+  std::uint32_t different = 0;
+  for (; seen != 0; seen &= seen - 1) ++different;
+  if (different > most) return 0;
+  const hn::FixedTag<std::uint32_t, 4> d;
+  auto first = hn::Set(d, kNone), second = first;
+  const auto place = hn::Iota(d, 0);
+  std::uint32_t used = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t* corner = t.corner[ids[i]];
+    for (int k = 0; k < 3; ++k) {
+      const auto vertex = hn::Set(d, corner[k]);
+      if (!hn::AllFalse(d, hn::Or(hn::Eq(first, vertex), hn::Eq(second, vertex)))) continue;
+      if (used == most) return 0;
+      first = hn::IfThenElse(hn::Eq(place, hn::Set(d, used)), vertex, first);
+      second = hn::IfThenElse(hn::Eq(place, hn::Set(d, used - 4)), vertex, second);
+      ++used;
+    }
+  }
+  return used;
+}
+
+/// BinaryNode::info of a leaf over the run, or 0 if that would hold too much.
+HWY_INLINE std::uint32_t leaf_info(const Treelet& t, std::uint32_t begin, std::uint32_t end,
+                                   LeafLimit limit) {
+  const std::uint32_t count = end - begin;
+  if (count > limit.items) return 0;
+  if (limit.vertices == kNone) return count;
+  const std::uint32_t vertices = few_vertices(t, t.ids + begin, count, limit.vertices);
+  return vertices > 0 ? count | vertices << 8 : 0;
+}
+
+HWY_INLINE Lanes box_of_run(const Treelet& t, std::uint32_t begin, std::uint32_t end) {
+  Lanes box = load_box(t.box[t.ids[begin]].v);
+  for (std::uint32_t i = begin + 1; i < end; ++i) box = merge(box, load_box(t.box[t.ids[i]].v));
+  return box;
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace komorebi
+HWY_AFTER_NAMESPACE();

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+
+#include "bvh/binary_tree.h"
+#include "bvh/items.h"
+#include "bvh/topology.h"
+#include "bvh/wide_node.h"
+#include "parallel/array.h"
+#include "parallel/thread_pool.h"
+
+namespace komorebi {
+
+/// Wide nodes (0 is the root, siblings are neighbours, children stand behind their parent) and
+/// leaves as bvh/mesh_tree.h or bvh/instance_tree.h have them.
+struct WideTree {
+  Array<WideNode> nodes;
+  Array<std::byte> clusters;    ///< over triangles
+  Array<std::uint32_t> leaves;  ///< over boxes: one item each
+  std::uint32_t depth = 0;      ///< wide nodes on the longest way down, at most kMaxDepth
+  std::uint32_t left_out = 0;   ///< items in no leaf
+  Aabb bounds;
+};
+
+/// Builds over triangles or boxes; the same bytes for any number of threads.
+/// @throws Cancelled, std::invalid_argument for too many items
+WideTree build_wide_tree(const Items& items, Builder builder, ThreadPool& pool,
+                         const Cancel& cancel);
+
+/// The wide tree that a planned binary tree stands for.
+WideTree emit_wide_tree(const Items& items, const BinaryTree& tree, ThreadPool& pool,
+                        const Cancel& cancel);
+
+}  // namespace komorebi

@@ -1,0 +1,198 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+#include "bvh/choose_builder.h"
+#include "bvh/grove.h"
+#include "bvh/traverse.h"
+#include "bvh/triangle_cluster.h"
+#include "bvh/validate.h"
+#include "parallel/scratch.h"
+#include "support/sah_reference.h"
+#include "support/shared_meshes.h"
+
+namespace komorebi {
+namespace {
+
+using testing::TriangleMesh;
+
+constexpr Builder kFast[] = {Builder::kLinear, Builder::kSah};
+
+/// Loose triangles of the given size in a cube of side 2.
+TriangleMesh random_triangles(std::size_t count, float size) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> number(-1.0f, 1.0f);
+  TriangleMesh mesh;
+  for (std::size_t i = 0; i < 3 * count; ++i) {
+    mesh.tri2vtx.push_back(static_cast<std::uint32_t>(i));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t first = mesh.vtx2xyz.size() - 3 * (i % 3);
+      const float around = i % 3 == 0 ? 0.0f : mesh.vtx2xyz[first];
+      mesh.vtx2xyz.push_back(i % 3 == 0 ? number(random) : around + size * number(random));
+    }
+  }
+  return mesh;
+}
+
+MeshTree build(const TriangleMesh& mesh, Builder builder, unsigned threads = 2) {
+  ThreadPool pool(threads);
+  const Cancel cancel;
+  return build_mesh_tree(mesh.vtx2xyz, mesh.tri2vtx, builder, pool, cancel);
+}
+
+TriangleMesh shared(const char* name) {
+  return testing::read_mesh(testing::shared_folder() / "data/meshes" / name);
+}
+
+void expect_same_bytes(const MeshTree& a, const MeshTree& b) {
+  ASSERT_EQ(a.nodes.size(), b.nodes.size());
+  ASSERT_EQ(a.clusters.size(), b.clusters.size());
+  EXPECT_EQ(std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(WideNode)), 0);
+  EXPECT_EQ(std::memcmp(a.clusters.data(), b.clusters.data(), a.clusters.size()), 0);
+  EXPECT_EQ(a.depth, b.depth);
+}
+
+TEST(Builders, AreValidForAnyNumberOfTriangles) {
+  for (const Builder builder : kFast) {
+    for (const std::size_t count : {0u, 1u, 2u, 3u, 8u, 9u, 100u, 1024u, 1025u, 20011u}) {
+      const TriangleMesh mesh = random_triangles(count, 0.1f);
+      const MeshTree tree = build(mesh, builder);
+      EXPECT_EQ(validate(tree, mesh.vtx2xyz, mesh.tri2vtx), "") << count << " triangles";
+    }
+  }
+}
+
+TEST(Builders, GiveTheSameBytesForAnyNumberOfThreads) {
+  std::vector<TriangleMesh> meshes{random_triangles(100000, 0.02f), random_triangles(50000, 1e-6f),
+                                   shared("bunny_hr.obj"), shared("sponza_dabrovic.ply")};
+  for (const TriangleMesh& mesh : meshes) {
+    for (const Builder builder : kFast) {
+      const MeshTree one = build(mesh, builder, 1);
+      EXPECT_EQ(validate(one, mesh.vtx2xyz, mesh.tri2vtx), "");
+      for (const unsigned threads : {2u, 3u, 7u}) {
+        expect_same_bytes(one, build(mesh, builder, threads));
+      }
+      release_scratch();
+      expect_same_bytes(one, build(mesh, builder, 2));
+    }
+  }
+}
+
+TEST(Builders, GiveTheSameBytesOnEveryInstructionSet) {
+  const std::string best = active_instruction_set();
+  for (const TriangleMesh& mesh : {random_triangles(20000, 0.05f), shared("bunny_hr.obj")}) {
+    for (const Builder builder : kFast) {
+      const MeshTree expected = build(mesh, builder);
+      for (const std::string& set : built_instruction_sets()) {
+        force_instruction_set(set);
+        expect_same_bytes(expected, build(mesh, builder));
+      }
+      force_instruction_set("");
+    }
+  }
+  EXPECT_EQ(best, active_instruction_set());
+}
+
+TEST(Builders, BoundTheDepthOfAMillionEqualTriangles) {
+  TriangleMesh mesh;
+  mesh.vtx2xyz = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  for (std::uint32_t i = 0; i < 3000000; ++i) mesh.tri2vtx.push_back(i % 3);
+  for (const Builder builder : kFast) {
+    const MeshTree tree = build(mesh, builder);
+    EXPECT_EQ(validate(tree, mesh.vtx2xyz, mesh.tri2vtx), "");
+    EXPECT_LE(tree.depth, 20u) << "log2 of an eighth of a million, and some";
+  }
+}
+
+TEST(Builders, KeepQualityBesideAnOutlier) {
+  // One triangle so far away that all others are in one cell of a plain grid.
+  TriangleMesh mesh = shared("spot.obj");
+  ThreadPool pool(2);
+  const Cancel cancel;
+  std::uint32_t left_out = 0;
+  const auto inner_cost = [&](const TriangleMesh& m, Builder builder) {
+    const Items items{m.vtx2xyz, m.tri2vtx, {}, {kClusterTriangles, kClusterVertices}};
+    const BinaryTree tree = builder == Builder::kSah ? grow_sah(items, pool, cancel, &left_out)
+                                                     : grow_linear(items, pool, cancel, &left_out);
+    return testing::wide_cost(tree) * double(half_area(tree.nodes[0].box()));
+  };
+  const double alone[] = {inner_cost(mesh, Builder::kLinear), inner_cost(mesh, Builder::kSah)};
+  for (const float x : {1e7f, 1e7f + 1, 1e7f}) {
+    mesh.tri2vtx.push_back(static_cast<std::uint32_t>(mesh.vtx2xyz.size() / 3));
+    mesh.vtx2xyz.insert(mesh.vtx2xyz.end(),
+                        {x, x == 1e7f ? 1.0f : 0.0f, float(mesh.tri2vtx.size())});
+  }
+  for (const Builder builder : kFast) {
+    const MeshTree tree = build(mesh, builder);
+    EXPECT_EQ(validate(tree, mesh.vtx2xyz, mesh.tri2vtx), "");
+  }
+  EXPECT_GT(alone[0], alone[1]) << "the better builder costs less";
+}
+
+TEST(Builders, LeaveOutWhatHasNoArea) {
+  TriangleMesh mesh = random_triangles(5000, 0.1f);
+  for (std::size_t i = 0; i < mesh.tri2vtx.size(); i += 9) mesh.tri2vtx[i] = mesh.tri2vtx[i + 1];
+  for (const Builder builder : kFast) {
+    const MeshTree tree = build(mesh, builder);
+    EXPECT_EQ(validate(tree, mesh.vtx2xyz, mesh.tri2vtx), "");
+    EXPECT_EQ(tree.degenerate_count, 1667u);
+  }
+  for (std::uint32_t& v : mesh.tri2vtx) v = 0;
+  for (const Builder builder : kFast) {
+    const MeshTree tree = build(mesh, builder);
+    EXPECT_EQ(validate(tree, mesh.vtx2xyz, mesh.tri2vtx), "");
+    EXPECT_TRUE(tree.nodes.empty());
+  }
+}
+
+TEST(Builders, SurviveTheLargestAndSmallestNumbers) {
+  for (const float scale : {1e-30f, 1e-15f, 1e15f, 1e25f, 1e37f}) {
+    const TriangleMesh mesh = testing::scaled(random_triangles(3000, 0.1f), scale);
+    for (const Builder builder : kFast) {
+      EXPECT_EQ(validate(build(mesh, builder), mesh.vtx2xyz, mesh.tri2vtx), "") << scale;
+    }
+  }
+}
+
+TEST(Builders, CanBeCancelled) {
+  ThreadPool pool(2);
+  Cancel cancel;
+  cancel.raise();
+  const TriangleMesh mesh = random_triangles(1000, 0.1f);
+  for (const Builder builder : kFast) {
+    EXPECT_THROW(build_mesh_tree(mesh.vtx2xyz, mesh.tri2vtx, builder, pool, cancel), Cancelled);
+  }
+}
+
+TEST(Builders, AreChosenByTheRaysToCome) {
+  EXPECT_EQ(choose_builder(1000000, 1e5), Builder::kLinear);
+  EXPECT_EQ(choose_builder(1000000, 1e9), Builder::kSah);
+  EXPECT_EQ(choose_builder(0, 0.0), Builder::kLinear);
+}
+
+class SahCost : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(SahCost, IsWithinTwoPercentOfTheReference) {
+  const TriangleMesh mesh = shared(GetParam());
+  const Items items{mesh.vtx2xyz, mesh.tri2vtx, {}, {kClusterTriangles, kClusterVertices}};
+  ThreadPool pool(2);
+  const Cancel cancel;
+  std::uint32_t left_out = 0;
+  const double reference = testing::SahReference(items).cost();
+  const double sah = testing::wide_cost(grow_sah(items, pool, cancel, &left_out));
+  const double linear = testing::wide_cost(grow_linear(items, pool, cancel, &left_out));
+  EXPECT_LE(sah, 1.02 * reference);
+  EXPECT_GT(linear, sah);
+  std::printf("%s: linear %.3f, SAH %.3f of the reference's cost %.2f\n", GetParam(),
+              linear / reference, sah / reference, reference);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shared, SahCost,
+                         ::testing::Values("bunny_hr.obj", "sponza_dabrovic.ply",
+                                           "dragon_vrip_res2.ply.gz", "boat.obj",
+                                           "motorBike.obj.gz", "dragon_vrip.ply.gz"),
+                         [](const auto& mesh) { return testing::test_name(mesh.param); });
+
+}  // namespace
+}  // namespace komorebi
