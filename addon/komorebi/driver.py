@@ -26,6 +26,7 @@ from .views import active_views
 T = TypeVar("T")
 
 TILE_SIZE = 64
+AUTOMATIC_LIGHT_SAMPLES = 4  # what the core casts for 0
 
 
 @dataclass(slots=True)
@@ -84,13 +85,23 @@ def render_frame(engine: Any, _depsgraph: Any, frame: Frame) -> None:
     native, threads = core.load(), frame.settings["threads"]
     cancel = native.Cancel()
     parts = _native_work(
-        engine, cancel, lambda: native_scene.load(native, frame.scene, threads, cancel)
-    )
+        engine, cancel,
+        lambda: native_scene.load(native, frame.scene, _expected_rays(frame), threads, cancel),
+    )  # fmt: skip
     _warn_environment(engine, parts.environment)
     for view in frame.views:
         _render_view(engine, frame, parts, view)
         if engine.test_break():
             return
+
+
+def _expected_rays(frame: Frame) -> float:
+    """At most so many: a noise threshold or a time limit may end sooner."""
+    x_min, y_min, x_max, y_max = frame.region
+    settings = frame.settings
+    light = settings["light_samples"] or AUTOMATIC_LIGHT_SAMPLES
+    pixels = (x_max - x_min) * (y_max - y_min) * len(frame.views)
+    return float(pixels) * settings["samples"] * (1 + light)
 
 
 def _native_work(engine: Any, cancel: Any, work: Callable[[], T]) -> T:
@@ -106,7 +117,7 @@ def _native_work(engine: Any, cancel: Any, work: Callable[[], T]) -> T:
 def _render_view(engine: Any, frame: Frame, parts: native_scene.Parts, view: View) -> None:
     native, data, threads = core.load(), frame.scene, frame.settings["threads"]
     progress = Progress(
-        engine, f"{frame.layer}, {view.name}" if view.name else frame.layer, _ignored(data)
+        engine, f"{frame.layer}, {view.name}" if view.name else frame.layer, _said(data, parts)
     )
     cancel = native.Cancel()
 
@@ -168,6 +179,11 @@ def _denoised(engine: Any, session: Any, frame: Frame) -> FloatArray | None:
         )  # fmt: skip
     except RenderCancelled:
         return None
+
+
+def _said(data: SceneData, parts: native_scene.Parts) -> str:
+    trees = "SAH trees" if parts.builder == "SAH" else "Linear trees"
+    return " | ".join(filter(None, (trees, _ignored(data))))
 
 
 def _ignored(scene: SceneData) -> str:

@@ -21,6 +21,7 @@ class KnownMesh:
 
     mesh: Any | None = None  # core.Mesh
     shading: bytes = b""  # digest of what is not its geometry
+    builder: str = ""
 
     @property
     def byte_count(self) -> int:
@@ -33,9 +34,10 @@ class Parts:
 
     meshes: list[Any] = field(default_factory=list)  # core.Mesh, as SceneData.meshes
     environment: Any | None = None  # core.Environment
+    builder: str = "LINEAR"  # of the trees that had to be built
 
 
-def load(core: Any, data: SceneData, threads: int, cancel: Any) -> Parts:
+def load(core: Any, data: SceneData, expected_rays: float, threads: int, cancel: Any) -> Parts:
     """The core's meshes with their trees, and its environment: those it knows, or new ones.
 
     Arrays of a mesh are dropped as soon as the core has its own. Raises what the core raises:
@@ -47,13 +49,17 @@ def load(core: Any, data: SceneData, threads: int, cancel: Any) -> Parts:
     image = data.world.image
     image_key = None if image is None else _image_key(core, image, threads)
     cache.make_room({*keys, image_key})
-    parts = Parts()
+    triangles = sum(len(m.corner_verts) - 2 * (len(m.face_offsets) - 1) for m in data.meshes)
+    builder = core.choose_builder(triangles, expected_rays)
+    parts = Parts(builder=builder)
     for index, mesh in enumerate(data.meshes):
         known = cache.get(keys[index], KnownMesh)
         shading = _digest(core, mesh.shading(), threads)
-        if known.shading != shading:
-            known.mesh = _native_mesh(core, mesh, threads, cancel, known.mesh)
-            known.shading = shading
+        if known.builder != builder and builder == "SAH":  # a better tree is wanted than is there
+            known.mesh, known.shading, known.builder = None, b"", builder
+        if known.mesh is None or known.shading != shading:
+            known.mesh = _native_mesh(core, mesh, builder, threads, cancel, known.mesh)
+            known.shading, known.builder = shading, known.builder or builder
         parts.meshes.append(known.mesh)
         data.meshes[index] = None  # type: ignore[call-overload]
     if image is not None and image_key is not None:
@@ -99,14 +105,14 @@ def _digest(core: Any, arrays: Iterable[NDArray[Any] | None], threads: int) -> b
 
 
 def _native_mesh(
-    core: Any, mesh: MeshData, threads: int, cancel: Any, same_geometry: Any | None
+    core: Any, mesh: MeshData, builder: str, threads: int, cancel: Any, same_geometry: Any | None
 ) -> Any:
     return core.Mesh(
         mesh.name, mesh.positions, mesh.corner_verts, mesh.face_offsets,
         tri2corner=mesh.tri2corner, tri2face=mesh.tri2face, corner_normals=mesh.corner_normals,
         vertex_normals=mesh.vertex_normals, smooth_faces=mesh.smooth_faces,
         face_materials=mesh.face_materials,
-        threads=threads, cancel=cancel, same_geometry=same_geometry,
+        builder=builder, threads=threads, cancel=cancel, same_geometry=same_geometry,
     )  # fmt: skip
 
 

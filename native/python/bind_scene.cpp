@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "bvh/choose_builder.h"
 #include "io/image.h"
 #include "python/arrays.h"
 #include "python/bind.h"
@@ -199,6 +200,13 @@ void bind_environment(py::module_& module) {
 }  // namespace
 
 void bind_scene(py::module_& module) {
+  module.def(
+      "choose_builder",
+      [](std::size_t triangles, double rays) {
+        return builder_name(choose_builder(triangles, rays));
+      },
+      py::arg("triangles"), py::arg("expected_rays"),
+      "The builder, LINEAR or SAH, with which build and rays together take the least time.");
   module.def("content_tags", &tags_of, py::arg("array"), py::arg("threads") = 0,
              "32 bytes for each 4096 of the array's, to be hashed on: two different blocks share "
              "them with probability 2^-128. Of use within this process alone.");
