@@ -26,7 +26,6 @@ from .views import active_views
 T = TypeVar("T")
 
 TILE_SIZE = 64
-AUTOMATIC_LIGHT_SAMPLES = 4  # what the core casts for 0
 
 
 @dataclass(slots=True)
@@ -99,7 +98,7 @@ def _expected_rays(frame: Frame) -> float:
     """At most so many: a noise threshold or a time limit may end sooner."""
     x_min, y_min, x_max, y_max = frame.region
     settings = frame.settings
-    light = settings["light_samples"] or AUTOMATIC_LIGHT_SAMPLES
+    light = settings["light_samples"] or core.load().AUTOMATIC_LIGHT_SAMPLES
     pixels = (x_max - x_min) * (y_max - y_min) * len(frame.views)
     return float(pixels) * settings["samples"] * (1 + light)
 

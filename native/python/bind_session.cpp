@@ -166,6 +166,7 @@ void bind_settings(py::module_& module) {
 }  // namespace
 
 void bind_session(py::module_& module) {
+  module.attr("AUTOMATIC_LIGHT_SAMPLES") = kAutomaticLightSamples;
   bind_settings(module);
   py::class_<Session, std::shared_ptr<Session>>(
       module, "Session", "Renders a committed scene on threads of its own; it starts at once.")

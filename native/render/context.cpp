@@ -20,11 +20,6 @@ float cosine_share(EnvironmentSampling sampling, bool uniform_world) {
   return 1.0f;
 }
 
-/// Light rays per camera sample when the settings leave it open: those with which a picture is good
-/// soonest (figures in docs/performance.md). More of them share the camera ray, its hit point and
-/// the tracer's packets; fewer leave more camera samples, which edges need, and a map seen behind.
-constexpr std::uint32_t kAutomaticLightSamples = 8;
-
 }  // namespace
 
 RenderContext make_context(const Scene& scene, const Settings& settings, const FilterView& filter) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "bvh/choose_builder.h"
 #include "io/array_file.h"
 
 namespace komorebi {
@@ -44,7 +45,7 @@ void put_mesh(ArrayFile& file, const std::string& key, const Mesh& mesh) {
 
 /// Back through the same door as a host's meshes, so that a damaged file is refused as they are.
 std::shared_ptr<const Mesh> get_mesh(const ArrayFile& file, const std::string& key,
-                                     ThreadPool& pool, const Cancel& cancel) {
+                                     double expected_rays, ThreadPool& pool, const Cancel& cancel) {
   const auto origin = file.get<double>(key + "origin", 3);
   auto vtx2xyz = file.get<float>(key + "vtx2xyz");
   for (std::size_t i = 0; i < vtx2xyz.size(); ++i) {
@@ -71,7 +72,7 @@ std::shared_ptr<const Mesh> get_mesh(const ArrayFile& file, const std::string& k
   input.corner2normal = normals;
   input.face2smooth = smooth;
   input.face2material = materials;
-  return Mesh::build(input, Builder::kLinear, pool, cancel);
+  return Mesh::build(input, choose_builder(face_offsets.size() - 1, expected_rays), pool, cancel);
 }
 
 void put_instances(ArrayFile& file, const std::vector<InstanceInput>& instances) {
@@ -164,12 +165,7 @@ DumpedRender read_dump(const std::string& path, ThreadPool& pool, const Cancel& 
   const ArrayFile file = ArrayFile::read(path);
   DumpedRender dumped;
   dumped.scene = std::make_shared<Scene>();
-  const auto meshes = file.get_value<std::uint32_t>("mesh/count");
-  for (std::uint32_t m = 0; m < meshes; ++m) {
-    dumped.scene->add_mesh(get_mesh(file, "mesh/" + std::to_string(m) + "/", pool, cancel));
-  }
-  get_instances(file, *dumped.scene);
-  get_world(file, *dumped.scene);
+  dumped.settings = get_settings(file);
   CameraDesc camera;
   const auto kind = file.get_value<std::uint32_t>("camera/kind");
   if (kind > 1) throw std::runtime_error("the scene's camera is of an unknown kind");
@@ -181,7 +177,19 @@ DumpedRender read_dump(const std::string& path, ThreadPool& pool, const Cancel& 
   camera.width = resolution[0];
   camera.height = resolution[1];
   dumped.scene->set_camera(camera);
-  dumped.settings = get_settings(file);
+
+  const Settings& settings = dumped.settings;
+  const std::uint32_t light =
+      settings.light_samples > 0 ? settings.light_samples : kAutomaticLightSamples;
+  const double expected_rays =
+      double(camera.width) * double(camera.height) * double(settings.samples) * (1.0 + light);
+  const auto meshes = file.get_value<std::uint32_t>("mesh/count");
+  for (std::uint32_t m = 0; m < meshes; ++m) {
+    const std::string key = "mesh/" + std::to_string(m) + "/";
+    dumped.scene->add_mesh(get_mesh(file, key, expected_rays, pool, cancel));
+  }
+  get_instances(file, *dumped.scene);
+  get_world(file, *dumped.scene);
   return dumped;
 }
 

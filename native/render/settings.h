@@ -24,6 +24,11 @@ struct Rect {
 /// Films of up to as many samples have finer units than larger ones.
 inline constexpr std::uint32_t kManySamples = 1u << 16;
 
+/// Light rays per camera sample when the settings leave it open: those with which a picture is good
+/// soonest (figures in docs/performance.md). More of them share the camera ray, its hit point and
+/// the tracer's packets; fewer leave more camera samples, which edges need, and a map seen behind.
+inline constexpr std::uint32_t kAutomaticLightSamples = 8;
+
 /// Everything about a render that is not in the scene. Names are those of `scene.komorebi`.
 struct Settings {
   Method method = Method::kAmbientOcclusion;

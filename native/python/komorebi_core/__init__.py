@@ -5,6 +5,7 @@ own their memory. Long calls release the GIL. Nothing here knows about Blender.
 """
 
 from ._komorebi import (
+    AUTOMATIC_LIGHT_SAMPLES,
     Cancel,
     Cancelled,
     Environment,
@@ -21,6 +22,7 @@ from ._komorebi import (
 )
 
 __all__ = [
+    "AUTOMATIC_LIGHT_SAMPLES",
     "Cancel",
     "Cancelled",
     "Environment",

@@ -41,10 +41,6 @@ MeshTree build(const TriangleMesh& mesh, Builder builder, unsigned threads = 2) 
   return build_mesh_tree(mesh.vtx2xyz, mesh.tri2vtx, builder, pool, cancel);
 }
 
-TriangleMesh shared(const char* name) {
-  return testing::read_mesh(testing::shared_folder() / "data/meshes" / name);
-}
-
 void expect_same_bytes(const MeshTree& a, const MeshTree& b) {
   ASSERT_EQ(a.nodes.size(), b.nodes.size());
   ASSERT_EQ(a.clusters.size(), b.clusters.size());
@@ -64,8 +60,10 @@ TEST(Builders, AreValidForAnyNumberOfTriangles) {
 }
 
 TEST(Builders, GiveTheSameBytesForAnyNumberOfThreads) {
+  KOMOREBI_SHARED_FILE(bunny, "data/meshes/bunny_hr.obj");
+  KOMOREBI_SHARED_FILE(sponza, "data/meshes/sponza_dabrovic.ply");
   std::vector<TriangleMesh> meshes{random_triangles(100000, 0.02f), random_triangles(50000, 1e-6f),
-                                   shared("bunny_hr.obj"), shared("sponza_dabrovic.ply")};
+                                   testing::read_mesh(bunny), testing::read_mesh(sponza)};
   for (const TriangleMesh& mesh : meshes) {
     for (const Builder builder : kFast) {
       const MeshTree one = build(mesh, builder, 1);
@@ -80,8 +78,9 @@ TEST(Builders, GiveTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Builders, GiveTheSameBytesOnEveryInstructionSet) {
+  KOMOREBI_SHARED_FILE(bunny, "data/meshes/bunny_hr.obj");
   const std::string best = active_instruction_set();
-  for (const TriangleMesh& mesh : {random_triangles(20000, 0.05f), shared("bunny_hr.obj")}) {
+  for (const TriangleMesh& mesh : {random_triangles(20000, 0.05f), testing::read_mesh(bunny)}) {
     for (const Builder builder : kFast) {
       const MeshTree expected = build(mesh, builder);
       for (const std::string& set : built_instruction_sets()) {
@@ -107,7 +106,8 @@ TEST(Builders, BoundTheDepthOfAMillionEqualTriangles) {
 
 TEST(Builders, KeepQualityBesideAnOutlier) {
   // One triangle so far away that all others are in one cell of a plain grid.
-  TriangleMesh mesh = shared("spot.obj");
+  KOMOREBI_SHARED_FILE(spot, "data/meshes/spot.obj");
+  TriangleMesh mesh = testing::read_mesh(spot);
   ThreadPool pool(2);
   const Cancel cancel;
   std::uint32_t left_out = 0;
@@ -174,7 +174,8 @@ TEST(Builders, AreChosenByTheRaysToCome) {
 class SahCost : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(SahCost, IsWithinTwoPercentOfTheReference) {
-  const TriangleMesh mesh = shared(GetParam());
+  KOMOREBI_SHARED_FILE(path, std::string("data/meshes/") + GetParam());
+  const TriangleMesh mesh = testing::read_mesh(path);
   const Items items{mesh.vtx2xyz, mesh.tri2vtx, {}, {kClusterTriangles, kClusterVertices}};
   ThreadPool pool(2);
   const Cancel cancel;
