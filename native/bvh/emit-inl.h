@@ -85,21 +85,20 @@ HWY_INLINE void write_cluster(const Items& items, const std::uint32_t* triangles
     std::uint32_t packed = 0;
     for (std::uint32_t k = 0; k < 3; ++k) {
       const auto v = hn::Set(d, corner[k]);
-      std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(d, hn::Eq(first, v), bits);
-      std::uint8_t more[8] = {};
-      hn::StoreMaskBits(d, hn::Eq(second, v), more);
-      const unsigned same = bits[0] | static_cast<unsigned>(more[0]) << 4;
-      std::uint32_t at = used;
-      if (same != 0) {
-        at = static_cast<std::uint32_t>(__builtin_ctz(same));
-      } else {
-        vertex[used] = corner[k];
-        first = hn::IfThenElse(hn::Eq(place, hn::Set(d, used)), v, first);
-        second = hn::IfThenElse(hn::Eq(place, hn::Set(d, used - 4)), v, second);
-        ++used;
+      std::intptr_t at = hn::FindFirstTrue(d, hn::Eq(first, v));
+      if (at < 0) {
+        at = hn::FindFirstTrue(d, hn::Eq(second, v));
+        if (at >= 0) {
+          at += 4;
+        } else {
+          at = static_cast<std::intptr_t>(used);
+          vertex[used] = corner[k];
+          first = hn::IfThenElse(hn::Eq(place, hn::Set(d, used)), v, first);
+          second = hn::IfThenElse(hn::Eq(place, hn::Set(d, used - 4)), v, second);
+          ++used;
+        }
       }
-      packed |= at << (3 * k);
+      packed |= static_cast<std::uint32_t>(at) << (3 * k);
     }
     corners[i] = static_cast<std::uint16_t>(packed);
   }
@@ -122,6 +121,25 @@ HWY_INLINE void write_cluster(const Items& items, const std::uint32_t* triangles
               4 * std::size_t{count});
 }
 
+void fetch_indices(const EmitTarget& to, const std::uint32_t* children, PlannedChildren planned) {
+  for (int i = planned.inner; i < planned.count; ++i) {
+    const BinaryNode& leaf = to.nodes[children[i]];
+    for (std::uint32_t k = 0; k < leaf.leaf_count(); ++k) {
+      hwy::Prefetch(&to.items->tri2vtx[3 * std::size_t{to.order[leaf.first + k]}]);
+    }
+  }
+}
+
+void fetch_vertices(const EmitTarget& to, const std::uint32_t* children, PlannedChildren planned) {
+  for (int i = planned.inner; i < planned.count; ++i) {
+    const BinaryNode& leaf = to.nodes[children[i]];
+    for (std::uint32_t k = 0; k < leaf.leaf_count(); ++k) {
+      const std::uint32_t* corner = &to.items->tri2vtx[3 * std::size_t{to.order[leaf.first + k]}];
+      for (int c = 0; c < 3; ++c) hwy::Prefetch(&to.items->vtx2xyz[3 * std::size_t{corner[c]}]);
+    }
+  }
+}
+
 /// Writes the wide node at `place.node`, and all below it behind `place.next_node`.
 void emit(const EmitTarget& to, std::uint32_t binary, bool below, EmitPlace& place) {
   std::uint32_t children[kWidth];
@@ -131,6 +149,10 @@ void emit(const EmitTarget& to, std::uint32_t binary, bool below, EmitPlace& pla
   wide.first_child = place.next_node;
   wide.first_leaf = place.next_leaf;
   std::memset(wide.leaf, 0, sizeof(wide.leaf));
+  // Triangles lie anywhere in the mesh's arrays: ask for all of a node's at once, indices first.
+  if (to.clusters != nullptr) fetch_indices(to, children, planned);
+  quantise_lanes(to.nodes, children, planned.count, wide);
+  if (to.clusters != nullptr) fetch_vertices(to, children, planned);
   for (int i = planned.inner; i < planned.count; ++i) {
     const BinaryNode& leaf = to.nodes[children[i]];
     wide.leaf[i] = static_cast<std::uint8_t>(place.next_leaf - wide.first_leaf);
@@ -143,7 +165,6 @@ void emit(const EmitTarget& to, std::uint32_t binary, bool below, EmitPlace& pla
       place.next_leaf += leaf_units(leaf);
     }
   }
-  quantise_lanes(to.nodes, children, planned.count, wide);
   const std::uint32_t first = place.next_node;
   place.next_node += static_cast<std::uint32_t>(planned.inner);
   for (int i = 0; below && i < planned.inner; ++i) {

@@ -12,7 +12,7 @@ BinaryTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cance
   *left_out = order.left_out;
   if (order.count == 0) return {};
   RunTree top;
-  top.cut(order, kTreeletSize);
+  top.cut(order, kRunSize);
 
   Grove grove(order.count, 1.0f / max_of(order.largest_side, 1e-30f));
   grove.claim(static_cast<std::uint32_t>(top.nodes.size()) - 1);
@@ -31,7 +31,7 @@ BinaryTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cance
   pool.for_each_chunk(top.runs.size(), 4, [&](std::size_t begin, std::size_t end) {
     Scratch<Treelet> desk(1);
     Treelet& t = desk[0];
-    std::uint32_t indices[kTreeletSize];
+    std::uint32_t indices[kRunSize];
     for (std::size_t i = begin; i < end && !cancel.raised(); ++i) {
       const RunTree::Run run = top.runs[i];
       for (std::uint32_t k = 0; k < run.count; ++k) {

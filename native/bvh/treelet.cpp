@@ -5,6 +5,7 @@
 
 #include "bvh/quantise.h"
 #include "bvh/traverse.h"
+#include "hwy/cache_control.h"
 
 // GCC before 12.3 gets 16-bit high products of this fallback wrong (bug 106322); none is used here.
 #define HWY_BROKEN_EMU128 0

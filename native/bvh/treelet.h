@@ -12,8 +12,11 @@
 
 namespace komorebi {
 
-/// Items that a worker takes at once: their boxes and nodes stay in its nearest caches.
-inline constexpr std::uint32_t kTreeletSize = 1024;
+/// Runs of the Morton order that a worker takes at once: their boxes and nodes stay in its nearest
+/// cache.
+inline constexpr std::uint32_t kRunSize = 1024;
+/// Most items on a desk: they stay in the next cache.
+inline constexpr std::uint32_t kTreeletSize = 4096;
 
 /// Eight floats: the low corner and the negated high corner, each with a lane to spare.
 struct alignas(32) WideBox {

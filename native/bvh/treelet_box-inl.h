@@ -109,9 +109,7 @@ HWY_INLINE std::uint32_t few_vertices(const Treelet& t, const std::uint32_t* ids
     const std::uint32_t* corner = t.corner[ids[i]];
     for (int k = 0; k < 3; ++k) seen |= std::uint64_t{1} << ((corner[k] * 0x9E3779B1u) >> 26);
   }
-  std::uint32_t different = 0;
-  for (; seen != 0; seen &= seen - 1) ++different;
-  if (different > most) return 0;
+  if (static_cast<std::uint32_t>(__builtin_popcountll(seen)) > most) return 0;
   const hn::FixedTag<std::uint32_t, 4> d;
   auto first = hn::Set(d, kNone), second = first;
   const auto place = hn::Iota(d, 0);

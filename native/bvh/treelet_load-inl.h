@@ -123,9 +123,13 @@ std::uint32_t code(const Items& items, const MortonGrid& grid, std::uint32_t beg
 void load(const Items& items, const std::uint32_t* indices, std::uint32_t count, Treelet& t) {
   const VertexReader vertex(items);
   const bool triangles = items.are_triangles();
+  constexpr std::uint32_t kAhead = 16;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t at = t.count++;
     const std::uint32_t item = indices[i];
+    if (triangles && i + kAhead < count) {
+      hwy::Prefetch(&items.tri2vtx[3 * std::size_t{indices[i + kAhead]}]);
+    }
     t.item[at] = item;
     t.ids[at] = at;
     if (triangles) {
