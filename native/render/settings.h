@@ -32,7 +32,7 @@ inline constexpr std::uint32_t kAutomaticLightSamples = 8;
 /// Everything about a render that is not in the scene. Names are those of `scene.komorebi`.
 struct Settings {
   Method method = Method::kAmbientOcclusion;
-  std::uint32_t samples = 128;      ///< camera samples a pixel
+  std::uint32_t samples = 32;       ///< camera samples a pixel
   std::uint32_t light_samples = 0;  ///< light rays per camera sample; 0: automatic
   std::uint32_t sample_offset = 0;  ///< index of the first camera sample
   std::uint32_t seed = 0;

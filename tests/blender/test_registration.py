@@ -5,7 +5,7 @@ import komorebi
 import support
 
 DEFAULTS = {
-    "method": "AMBIENT_OCCLUSION", "samples": 128, "light_samples": 0, "sample_offset": 0,
+    "method": "AMBIENT_OCCLUSION", "samples": 32, "light_samples": 0, "sample_offset": 0,
     "use_adaptive_sampling": False, "adaptive_threshold": 0.0, "adaptive_min_samples": 0,
     "time_limit": 0.0, "use_denoising": False,
     "seed": 0, "use_animated_seed": False, "ao_distance": 0.0, "ao_sampling": "COSINE",
