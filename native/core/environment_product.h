@@ -41,8 +41,7 @@ inline Selection select(const std::uint32_t* cdf, std::uint32_t first, std::uint
   const double total = cdf[last] - start;
   const double offset = position * total;
   const double whole = offset < total - 1.0 ? offset : total - 1.0;  // the product may round up
-  const std::uint32_t target =
-      start + static_cast<std::uint32_t>(static_cast<std::int32_t>(whole));
+  const std::uint32_t target = start + static_cast<std::uint32_t>(static_cast<std::int32_t>(whole));
   std::uint32_t count = last - first;
   while (count > 1) {
     const std::uint32_t half = count / 2;

@@ -20,8 +20,9 @@ class ArrayAllocator {
  public:
   using value_type = T;
   ArrayAllocator() = default;
+  // Implicit, as the standard's.
   template <class U>
-  ArrayAllocator(const ArrayAllocator<U>&) {}
+  ArrayAllocator(const ArrayAllocator<U>&) {}  // NOLINT(google-explicit-constructor)
 
   T* allocate(std::size_t count) {
     if (count > static_cast<std::size_t>(-1) / sizeof(T)) throw std::bad_array_new_length();

@@ -147,8 +147,9 @@ ProductTable::Cells ProductTable::sum_cells(const EnvironmentView& map) {
 }
 
 void ProductTable::fill_bin(std::uint32_t bin, const Cells& cells) {
+  const std::uint32_t bin_column = bin % bins_, bin_row = bin / bins_;
   const auto corner = [&](double x, double y) {
-    const double column = bin % bins_ + x, row = bin / bins_ + y;
+    const double column = bin_column + x, row = bin_row + y;
     return Vec3d(direction_from_octahedral(
         Vec2(Vec3d(2.0 * column / bins_ - 1.0, 2.0 * row / bins_ - 1.0, 0))));
   };
