@@ -1,5 +1,6 @@
 #include "render/mesh_geometry.h"
 
+#include <algorithm>
 #include <mutex>
 
 #include "render/triangulate.h"
@@ -65,7 +66,9 @@ void MeshGeometry::take_positions(std::span<const float> positions, ThreadPool& 
 void MeshGeometry::take_triangles(const MeshInput& in, ThreadPool& pool, const Cancel& cancel) {
   const std::size_t faces = in.face_offsets.size() - 1;
   if (!in.tri2corner.empty()) {
-    tri2corner.assign(in.tri2corner.begin(), in.tri2corner.end());
+    tri2corner.resize(in.tri2corner.size());
+    std::transform(in.tri2corner.begin(), in.tri2corner.end(), tri2corner.begin(),
+                   [](std::int32_t corner) { return static_cast<std::uint32_t>(corner); });
   } else if (in.corner2vtx.size() != 3 * faces) {
     tri2corner.resize(3 * triangle_count_of(in.face_offsets));
     triangulate(in.vtx2xyz, in.corner2vtx, in.face_offsets, tri2corner, pool, cancel);
