@@ -21,8 +21,8 @@ bpy.ops.mesh.primitive_monkey_add()
 support.small(scene, size=(320, 240), samples={samples})
 state = dict(shown=0, started=None)
 write = komorebi.result.ResultWriter._write
-def counted(self, session, tile, passes):
-    write(self, session, tile, passes)
+def counted(self, session, tile, passes, combined=None):
+    write(self, session, tile, passes, combined)
     state["shown"] += 1
     print("SHOWN", tile, len(passes), flush=True)
 komorebi.result.ResultWriter._write = counted
