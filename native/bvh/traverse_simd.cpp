@@ -3,11 +3,9 @@
 #include "bvh/closest.h"
 #include "bvh/kernel.h"
 #include "bvh/pack_table.h"
+#include "bvh/simd_targets.h"
 #include "bvh/traverse_scalar.h"
 
-// Levels that add nothing to these kernels, and vectors whose length the compiler does not know.
-#define HWY_DISABLED_TARGETS \
-  (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bvh/traverse_simd.cpp"
 // The order of these matters.
@@ -25,21 +23,7 @@
 #if HWY_ONCE
 namespace komorebi {
 
-const Kernel* const kSimdKernels[] = {
-#if HWY_TARGETS & HWY_AVX3
-    &N_AVX3::kKernel,
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    &N_AVX2::kKernel,
-#endif
-#if HWY_TARGETS & HWY_SSE4
-    &N_SSE4::kKernel,
-#endif
-#if HWY_TARGETS & HWY_NEON
-    &N_NEON::kKernel,
-#endif
-    nullptr,
-};
+const Kernel* const kSimdKernels[] = {KOMOREBI_KERNELS(kKernel)};
 
 }  // namespace komorebi
 #endif

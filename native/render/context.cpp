@@ -41,8 +41,7 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   }
   context.transparent = settings.film_transparent;
   context.seed = settings.seed;
-  context.light_samples =
-      settings.light_samples > 0 ? settings.light_samples : kAutomaticLightSamples;
+  context.light_samples = resolved_light_samples(settings);
   return context;
 }
 

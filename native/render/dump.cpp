@@ -179,10 +179,8 @@ DumpedRender read_dump(const std::string& path, ThreadPool& pool, const Cancel& 
   dumped.scene->set_camera(camera);
 
   const Settings& settings = dumped.settings;
-  const std::uint32_t light =
-      settings.light_samples > 0 ? settings.light_samples : kAutomaticLightSamples;
-  const double expected_rays =
-      double(camera.width) * double(camera.height) * double(settings.samples) * (1.0 + light);
+  const double expected_rays = double(camera.width) * double(camera.height) *
+                               double(settings.samples) * (1.0 + resolved_light_samples(settings));
   const auto meshes = file.get_value<std::uint32_t>("mesh/count");
   for (std::uint32_t m = 0; m < meshes; ++m) {
     const std::string key = "mesh/" + std::to_string(m) + "/";

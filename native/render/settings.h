@@ -55,6 +55,11 @@ struct Settings {
   std::vector<std::string> passes{"Combined", "Depth", "Normal"};
 };
 
+/// Light rays that each camera sample casts.
+inline std::uint32_t resolved_light_samples(const Settings& settings) {
+  return settings.light_samples > 0 ? settings.light_samples : kAutomaticLightSamples;
+}
+
 /// Throws std::invalid_argument with a sentence that names the setting out of range.
 void check_settings(const Settings& settings, std::uint32_t width, std::uint32_t height);
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -163,6 +165,28 @@ inline std::vector<float> render(const std::shared_ptr<const Scene>& scene,
   const Rect region = session.settings().region;
   std::vector<float> picture(Film::pass(pass).channels * region.area());
   session.film().read(pass, region, picture.data());
+  return picture;
+}
+
+/// The Combined pass of a render that was cancelled and resumed on its way, at least once.
+inline std::vector<float> render_with_breaks(const std::shared_ptr<const Scene>& scene,
+                                             const Settings& settings) {
+  Session session(scene, settings);
+  int breaks = 0;
+  // Longer and longer: a cancel drops what is half done, so on a busy machine short ones get
+  // nowhere.
+  for (double seconds = 0.002; !session.wait(seconds); seconds *= 1.5) {
+    session.cancel();
+    const bool ended = session.wait(10.0);
+    EXPECT_TRUE(ended);
+    if (!ended) return {};
+    breaks += session.progress().fraction < 1.0;
+    session.resume();
+  }
+  EXPECT_GT(breaks, 0);
+  const Rect region = session.settings().region;
+  std::vector<float> picture(Film::pass("Combined").channels * region.area());
+  session.film().read("Combined", region, picture.data());
   return picture;
 }
 

@@ -122,18 +122,7 @@ TEST_F(Adaptive, CancelAndResumeDoNotShow) {
   settings_.samples = 400;
   settings_.adaptive_threshold = 0.005f;
   const auto expected = render(scene_, settings_);
-  Session session(scene_, settings_);
-  int breaks = 0;
-  for (double seconds = 0.002; !session.wait(seconds); seconds *= 1.5) {
-    session.cancel();
-    ASSERT_TRUE(session.wait(10.0));
-    breaks += session.progress().fraction < 1.0;
-    session.resume();
-  }
-  EXPECT_GT(breaks, 0);
-  std::vector<float> picture(expected.size());
-  session.film().read("Combined", session.settings().region, picture.data());
-  EXPECT_EQ(picture, expected);
+  EXPECT_EQ(testing::render_with_breaks(scene_, settings_), expected);
 }
 
 TEST_F(Adaptive, ConvergedCellsCostNoMoreRays) {
