@@ -2,63 +2,141 @@
 
 #include <algorithm>
 
+#include "bvh/join_treelets.h"
+
 namespace komorebi {
+namespace {
 
-Grove::Grove(std::uint32_t item_count, float scale) : scale_(scale) {
-  tree_.item_count = item_count;
-  tree_.order = Scratch<std::uint32_t>(item_count);
-  tree_.nodes = Scratch<BinaryNode>(2 * std::size_t{item_count});
+/// What a treelet takes at most: every item a leaf, and as many nodes.
+constexpr std::size_t kNodeBytes = sizeof(WideNode);
+constexpr std::size_t kLeafBytes = std::size_t{ClusterView::units(1, 3)} * kClusterUnit;
+constexpr std::size_t kSmallBlock = std::size_t{1} << 18;
+constexpr std::size_t kLargeBlock = std::size_t{1} << 21;
+
+/// What a treelet costs less where it may be a forest of i + 1 nodes, in units of its root's area:
+/// about the mean of those of scanned and of built meshes.
+constexpr float kGain[kPlanWidth - 1] = {0.0f, 0.3f, 0.4f, 0.5f, 0.6f, 0.65f, 0.7f};
+
+}  // namespace
+
+Grove::Grove(const Items& items, std::uint32_t most_treelets, float scale, ThreadPool& pool,
+             const Cancel& cancel)
+    : items_(items),
+      scale_(scale),
+      pool_(pool),
+      cancel_(cancel),
+      kernel_(build_kernel()),
+      nodes_(2 * std::size_t{most_treelets}) {}
+
+void Grove::prepare(std::uint32_t treelets) {
+  treelets_ = Scratch<WideTreelet>(treelets);
+  for (WideTreelet& treelet : treelets_) treelet.room = 1;
 }
 
-float Grove::area(const BinaryNode& node) const {
-  const float x = (-node.minus_hi[0] - node.lo[0]) * scale_;
-  const float y = (-node.minus_hi[1] - node.lo[1]) * scale_;
-  const float z = (-node.minus_hi[2] - node.lo[2]) * scale_;
-  return x * y + y * z + z * x;
+void Grove::plan_top(std::uint32_t treelets) {
+  prepare(treelets);
+  is_planned_ = true;
+  plan(0);
+  if (!is_treelet(nodes_[0])) give_rooms(0);
 }
 
-void Grove::plant(Treelet& t, std::uint32_t position, BinaryNode* root, PlanCost* cost) {
-  // The root goes elsewhere: local node i > 0 stands at base + i − 1.
-  const std::uint32_t base = claim(t.node_count - 1);
-  for (std::uint32_t i = t.node_count; i-- > 0;) {
-    BinaryNode node = t.nodes[i];
-    if (node.is_leaf()) {
-      t.cost[i] = plan_leaf(area(node));
-      node.first += position;
-    } else {
-      node.info = plan_inner(area(node), t.cost[node.first], t.cost[node.first + 1], &t.cost[i]);
-      node.first += base - 1;
+/// Boxes and plans of what is above the treelets.
+PlanCost Grove::plan(std::uint32_t index) {
+  BinaryNode& node = nodes_[index];
+  const auto area = [&] {
+    const Aabb box = node.box();
+    return half_area(Aabb{box.lo * scale_, box.hi * scale_});
+  };
+  if (is_treelet(node)) {
+    const WideTreelet& treelet = treelets_[node.first];
+    if (!is_planned_) {
+      std::copy_n(treelet.root[0].lo, 3, node.lo);
+      std::copy_n(treelet.root[0].minus_hi, 3, node.minus_hi);
+      return plan_closed(treelet.cost);
     }
-    (i > 0 ? tree_.nodes[base + i - 1] : *root) = node;
+    // What it costs as one node is part of all sums, and so decides nothing.
+    PlanCost cost = plan_closed(0.0f);
+    for (int i = 0; i < kPlanWidth - 1; ++i) cost.at[i] = -kGain[i] * area();
+    return cost;
   }
-  *cost = t.cost[0];
-  for (std::uint32_t i = 0; i < t.count; ++i) tree_.order[position + i] = t.item[t.ids[i]];
-}
-
-PlanCost Grove::finish(std::uint32_t index, const std::vector<BinaryNode>& roots,
-                       const std::vector<PlanCost>& costs) {
-  BinaryNode& node = tree_.nodes[index];
-  if (node.info == kTreelet) {
-    const std::uint32_t treelet = node.first;
-    node = roots[treelet];
-    return costs[treelet];
-  }
-  const PlanCost left = finish(node.first, roots, costs);
-  const PlanCost right = finish(node.first + 1, roots, costs);
-  const BinaryNode& a = tree_.nodes[node.first];
-  const BinaryNode& b = tree_.nodes[node.first + 1];
+  const PlanCost left = plan(node.first);
+  const PlanCost right = plan(node.first + 1);
+  const BinaryNode& a = nodes_[node.first];
+  const BinaryNode& b = nodes_[node.first + 1];
   for (int axis = 0; axis < 3; ++axis) {
     node.lo[axis] = min_of(a.lo[axis], b.lo[axis]);
     node.minus_hi[axis] = min_of(a.minus_hi[axis], b.minus_hi[axis]);
   }
   PlanCost cost;
-  node.info = plan_inner(area(node), left, right, &cost);
+  node.info = plan_inner(area(), left, right, &cost);
   return cost;
 }
 
-BinaryTree Grove::finish(const std::vector<BinaryNode>& roots, const std::vector<PlanCost>& costs) {
-  if (tree_.item_count > 0) finish(0, roots, costs);
-  return std::move(tree_);
+/// For the wide node that stands for `node`, and for all below it.
+void Grove::give_rooms(std::uint32_t node) {
+  const Vec3 step = step_of(nodes_[node]);
+  OpenNodes open(nodes_.data());
+  open.push_wide(node);
+  std::uint32_t child = 0;
+  int room = 0;
+  while (open.pop(step, &child, &room)) {
+    if (!is_treelet(nodes_[child])) {
+      give_rooms(child);
+    } else {
+      treelets_[nodes_[child].first].room = static_cast<std::uint32_t>(room);
+      treelets_[nodes_[child].first].step = step;
+    }
+  }
+}
+
+void Grove::reserve(Stage& stage, std::size_t bytes) {
+  if (static_cast<std::size_t>(stage.end - stage.at) >= bytes) return;
+  const std::size_t usual = items_.count() < (1u << 18) ? kSmallBlock : kLargeBlock;
+  Scratch<std::byte> block(std::max(bytes, usual));
+  stage.at = block.begin();
+  stage.end = block.end();
+  const std::lock_guard lock(mutex_);
+  blocks_.push_back(std::move(block));
+}
+
+void Grove::make_room(WideTreelet& to, std::size_t items, Stage& nodes, Stage& leaves) {
+  reserve(nodes, items * kNodeBytes);
+  reserve(leaves, items * kLeafBytes);
+  to.root_nodes = reinterpret_cast<WideNode*>(nodes.at);
+  to.root_leaves = leaves.at;
+}
+
+void Grove::grow(std::uint32_t treelets, FunctionRef<void(std::uint32_t, Treelet&)> build) {
+  if (!is_planned_) prepare(treelets);
+  std::atomic<std::uint32_t> next{0};
+  pool_.run(std::min(pool_.size(), treelets), [&](unsigned) {
+    Scratch<Treelet> desk(1);
+    Treelet& t = desk[0];
+    Stage nodes, leaves;
+    for (std::uint32_t i = next++; i < treelets && !cancel_.raised(); i = next++) {
+      t.count = 0;
+      build(i, t);
+      WideTreelet& to = treelets_[i];
+      make_room(to, t.count, nodes, leaves);
+      kernel_.emit_treelet(items_, scale_, t, to);
+      nodes.at = reinterpret_cast<std::byte*>(to.nodes + to.node_count);
+      leaves.at = to.leaves + to.leaf_units * items_.leaf_unit();
+    }
+  });
+  check(cancel_);
+}
+
+void Grove::transplant(const BinaryTree& tree) {
+  prepare(1);
+  Stage nodes, leaves;
+  make_room(treelets_[0], tree.item_count, nodes, leaves);
+  kernel_.emit_tree(items_, tree, treelets_[0]);
+  mark_treelet(0, 0);
+}
+
+WideTree Grove::finish() {
+  if (!is_planned_) plan(0);
+  return join_treelets(items_, nodes_.data(), treelets_.data(), pool_, cancel_);
 }
 
 }  // namespace komorebi

@@ -1,55 +1,73 @@
 #pragma once
 
 #include <atomic>
+#include <mutex>
 #include <vector>
 
 #include "bvh/treelet.h"
+#include "bvh/wide_tree.h"
 #include "parallel/cancel.h"
 #include "parallel/thread_pool.h"
 
 namespace komorebi {
 
-/// A binary tree in the making: treelets that workers finish in any order, and the tree over them.
-/// Indices of nodes depend on that order; what they hold does not.
+/// A wide tree in the making: workers build treelets in any order, each to the end while it is in
+/// their caches, and a binary tree stands over them. Where a worker leaves a treelet's wide nodes
+/// depends on that order; the finished tree does not.
 class Grove {
  public:
+  /// @param most_treelets  that can be marked
   /// @param scale  areas are measured in units of 1 / scale²
-  Grove(std::uint32_t item_count, float scale);
+  Grove(const Items& items, std::uint32_t most_treelets, float scale, ThreadPool& pool,
+        const Cancel& cancel);
 
-  /// Room for nodes that stand together; thread-safe. Node 0 is taken.
+  /// Room for nodes of the top tree that stand together; thread-safe. Node 0 is taken.
   std::uint32_t claim(std::uint32_t nodes) { return next_.fetch_add(nodes); }
-  BinaryNode& node(std::uint32_t index) { return tree_.nodes[index]; }
+  BinaryNode& node(std::uint32_t index) { return nodes_[index]; }
 
-  /// The desk's tree becomes treelet `index`, over positions from `position` on; thread-safe.
-  void plant(Treelet& treelet, std::uint32_t position, BinaryNode* root, PlanCost* cost);
-
-  /// Marks a node of the top tree as the root of a treelet.
+  /// Makes a node of the top tree the root of a treelet.
   void mark_treelet(std::uint32_t node, std::uint32_t index) {
-    tree_.nodes[node].first = index;
-    tree_.nodes[node].info = kTreelet;
+    nodes_[node].first = index;
+    nodes_[node].info = kTreeletInfo;
   }
 
-  /// When all is planted: puts the treelets' roots in place, and gives the top tree's nodes (from 0
-  /// down) their boxes and plans.
-  BinaryTree finish(const std::vector<BinaryNode>& roots, const std::vector<PlanCost>& costs);
+  /// Plans the top before the treelets have grown; to be called when all its nodes, treelets too,
+  /// have their boxes. Then treelets give as many roots to the wide nodes above them as pays.
+  void plan_top(std::uint32_t treelets);
+
+  /// All treelets: `build(index, desk)` leaves one on an empty desk, without boxes of inner nodes.
+  /// @throws Cancelled
+  void grow(std::uint32_t treelets, FunctionRef<void(std::uint32_t, Treelet&)> build);
+
+  /// One treelet from a whole planned tree, of any size.
+  void transplant(const BinaryTree& tree);
+
+  /// When all have grown: the wide tree. @throws Cancelled, std::invalid_argument: too many items
+  WideTree finish();
 
  private:
-  static constexpr std::uint32_t kTreelet = 0xffffffffu;
+  /// Memory that one worker fills.
+  struct Stage {
+    std::byte* at = nullptr;
+    std::byte* end = nullptr;
+  };
+  void prepare(std::uint32_t treelets);
+  void reserve(Stage& stage, std::size_t bytes);
+  void make_room(WideTreelet& to, std::size_t items, Stage& nodes, Stage& leaves);
+  PlanCost plan(std::uint32_t node);
+  void give_rooms(std::uint32_t node);
 
-  PlanCost finish(std::uint32_t node, const std::vector<BinaryNode>& roots,
-                  const std::vector<PlanCost>& costs);
-  float area(const BinaryNode& node) const;
-
+  const Items& items_;
   float scale_;
-  BinaryTree tree_;
+  ThreadPool& pool_;
+  const Cancel& cancel_;
+  const BuildKernel& kernel_;
+  Scratch<BinaryNode> nodes_;
   std::atomic<std::uint32_t> next_{1};
+  bool is_planned_ = false;
+  Scratch<WideTreelet> treelets_;
+  std::mutex mutex_;
+  std::vector<Scratch<std::byte>> blocks_;
 };
-
-/// Binary trees with their plans (bvh/wide_plan.h); empty if every item is left out.
-/// `left_out` counts those. @throws Cancelled
-BinaryTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cancel,
-                       std::uint32_t* left_out);
-BinaryTree grow_sah(const Items& items, ThreadPool& pool, const Cancel& cancel,
-                    std::uint32_t* left_out);
 
 }  // namespace komorebi

@@ -23,7 +23,7 @@ constexpr std::uint32_t kTopMedianDepth = 28;
 
 /// A range on its way into the tree.
 struct Part {
-  std::uint32_t node, depth, position;
+  std::uint32_t node, depth;
   ClusterRange range;
 };
 
@@ -36,14 +36,15 @@ class SahBuilder {
         cancel_(cancel),
         kernel_(build_kernel()),
         scale_(1.0f / max_of(order.largest_side, 1e-30f)),
-        grove_(order.count, scale_),
+        grove_(items, order.count, scale_, pool, cancel),
         sorted_(order.count),
         cluster_(order.count) {}
 
-  BinaryTree build() {
+  WideTree build() {
     find_clusters();
     split_top();
-    return plant_treelets();
+    grow_treelets();
+    return grove_.finish();
   }
 
  private:
@@ -56,15 +57,12 @@ class SahBuilder {
       Scratch<Treelet> desk(1);
       Treelet& t = desk[0];
       for (std::size_t i = begin; i < end && !cancel_.raised(); ++i) {
-        const RunTree::Run run = top.runs[i];
+        const Run run = top.runs[i];
         std::uint32_t* const sorted = &sorted_[run.first];
-        for (std::uint32_t k = 0; k < run.count; ++k) {
-          sorted[k] = order_.item(run.first + k);
-          t.code[k] = order_.code(run.first + k);
-        }
+        order_.copy_run(run, sorted, t.code);
         t.count = 0;
         kernel_.load(items_, sorted, run.count, t);
-        kernel_.linear(t.code, kClusterLimit, kLargestCluster * order_.sample_area, t);
+        kernel_.linear(kClusterLimit, kLargestCluster * order_.sample_area, t);
         for (std::uint32_t k = 0; k < run.count; ++k) sorted[k] = t.item[t.ids[k]];
         for (std::uint32_t k = 0; k < t.node_count; ++k) count[i] += t.nodes[k].is_leaf() ? 1u : 0u;
         std::uint32_t to = base[i] = next.fetch_add(count[i]);
@@ -92,8 +90,8 @@ class SahBuilder {
   }
 
   void split_top() {
-    parts_ = std::vector<Part>(cluster_count_);
-    Part whole{0, 0, 0, {}};
+    treelets_ = Scratch<ClusterRange>(cluster_count_);
+    Part whole{0, 0, {}};
     whole.range.begin = 0;
     whole.range.end = cluster_count_;
     kernel_.measure(clusters(), whole.range);
@@ -116,19 +114,22 @@ class SahBuilder {
   void split(const Part& part, Part* large) {
     if (part.range.items <= kTreeletSize) {
       const std::uint32_t treelet = treelet_count_.fetch_add(1);
-      parts_[treelet] = part;
+      treelets_[treelet] = part.range;
       grove_.mark_treelet(part.node, treelet);
+      for (int axis = 0; axis < 3; ++axis) {
+        grove_.node(part.node).lo[axis] = part.range.box.v[axis];
+        grove_.node(part.node).minus_hi[axis] = part.range.box.v[4 + axis];
+      }
       return;
     }
     if (cancel_.raised()) return;
     const std::uint32_t child = grove_.claim(2);
     grove_.node(part.node).first = child;
     grove_.node(part.node).info = kInnerBit;
-    Part left{child, part.depth + 1, part.position, {}}, right = left;
+    Part left{child, part.depth + 1, {}}, right = left;
     right.node = child + 1;
     kernel_.split(clusters(), scale_, part.depth >= kTopMedianDepth, part.range, &left.range,
                   &right.range);
-    right.position += left.range.items;
     const bool is_large = large != nullptr && part.range.end - part.range.begin > kSmallRange;
     if (is_large) {
       large[0] = left;
@@ -139,26 +140,16 @@ class SahBuilder {
     }
   }
 
-  BinaryTree plant_treelets() {
-    const std::uint32_t treelets = treelet_count_;
-    std::vector<BinaryNode> roots(treelets);
-    std::vector<PlanCost> costs(treelets);
-    pool_.for_each_chunk(treelets, 2, [&](std::size_t begin, std::size_t end) {
-      Scratch<Treelet> desk(1);
-      Treelet& t = desk[0];
-      for (std::size_t i = begin; i < end && !cancel_.raised(); ++i) {
-        const Part& part = parts_[i];
-        t.count = 0;
-        for (std::uint32_t c = part.range.begin; c < part.range.end; ++c) {
-          const BinaryNode& cluster = cluster_[ids_[c]];
-          kernel_.load(items_, &sorted_[cluster.first], cluster.info, t);
-        }
-        kernel_.sah(items_.leaf, scale_, t);
-        grove_.plant(t, part.position, &roots[i], &costs[i]);
+  void grow_treelets() {
+    grove_.plan_top(treelet_count_);
+    grove_.grow(treelet_count_, [&](std::uint32_t i, Treelet& t) {
+      const ClusterRange& range = treelets_[i];
+      for (std::uint32_t c = range.begin; c < range.end; ++c) {
+        const BinaryNode& cluster = cluster_[ids_[c]];
+        kernel_.load(items_, &sorted_[cluster.first], cluster.info, t);
       }
+      kernel_.sah(items_.leaf, scale_, t);
     });
-    check(cancel_);
-    return grove_.finish(roots, costs);
   }
 
   const Items& items_;
@@ -172,18 +163,18 @@ class SahBuilder {
   Scratch<BinaryNode> cluster_;    ///< first and info: a run of sorted_
   std::uint32_t cluster_count_ = 0;
   Scratch<std::uint32_t> ids_, moved_, bin_;
-  std::vector<Part> parts_;  ///< treelets
+  Scratch<ClusterRange> treelets_;
   std::atomic<std::uint32_t> treelet_count_{0};
 };
 
 }  // namespace
 
-BinaryTree grow_sah(const Items& items, ThreadPool& pool, const Cancel& cancel,
-                    std::uint32_t* left_out) {
+WideTree grow_sah(const Items& items, ThreadPool& pool, const Cancel& cancel) {
   const MortonOrder order = order_by_morton(items, pool, cancel);
-  *left_out = order.left_out;
-  if (order.count == 0) return {};
-  return SahBuilder(items, order, pool, cancel).build();
+  WideTree wide;
+  if (order.count > 0) wide = SahBuilder(items, order, pool, cancel).build();
+  wide.left_out = order.left_out;
+  return wide;
 }
 
 }  // namespace komorebi

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "bvh/triangle_cluster.h"
 #include "core/triangle.h"
 
 namespace komorebi {
@@ -21,6 +22,11 @@ struct Items {
   LeafLimit leaf{1, kNone};
 
   bool are_triangles() const { return leaf.vertices != kNone; }
+  /// Bytes in which leaves are counted.
+  std::size_t leaf_unit() const { return are_triangles() ? kClusterUnit : sizeof(std::uint32_t); }
+  std::uint32_t leaf_units(std::uint32_t items_in_it, std::uint32_t vertices_in_it) const {
+    return are_triangles() ? ClusterView::units(items_in_it, vertices_in_it) : 1;
+  }
   std::size_t count() const { return are_triangles() ? tri2vtx.size() / 3 : boxes.size(); }
 
   Vec3 corner(std::size_t triangle, std::size_t which) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <mutex>
 #include <vector>
 
@@ -134,6 +135,22 @@ MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& 
   order.left_out = left_out;
   order.count = total - left_out;
   return order;
+}
+
+void MortonOrder::copy_run(Run run, std::uint32_t* items, std::uint32_t* codes) const {
+  if (wide.size() == 0) {
+    for (std::uint32_t k = 0; k < run.count; ++k) {
+      items[k] = narrow[run.first + k].index;
+      codes[k] = narrow[run.first + k].key;
+    }
+    return;
+  }
+  const std::uint64_t differ = wide[run.first].key ^ wide[run.first + run.count - 1].key;
+  const int shift = std::max(0, 33 - std::countl_zero(differ));
+  for (std::uint32_t k = 0; k < run.count; ++k) {
+    items[k] = wide[run.first + k].index;
+    codes[k] = static_cast<std::uint32_t>(wide[run.first + k].key >> shift) & 0x7fffffffu;
+  }
 }
 
 void RunTree::cut(const MortonOrder& order, std::uint32_t most) {

@@ -11,6 +11,11 @@
 
 namespace komorebi {
 
+/// Neighbours in the order.
+struct Run {
+  std::uint32_t first, count;
+};
+
 /// Items along the Morton curve, those that no ray can meet left out.
 struct MortonOrder {
   /// The first `count` are sorted by (code, index). Only one of the two has anything in it.
@@ -25,6 +30,9 @@ struct MortonOrder {
   std::uint32_t item(std::size_t i) const {
     return wide.size() > 0 ? wide[i].index : narrow[i].index;
   }
+
+  /// The run's items, and 31 bits of their codes: the highest in which they differ and those below.
+  void copy_run(Run run, std::uint32_t* items, std::uint32_t* codes) const;
 };
 
 /// @throws Cancelled
@@ -34,9 +42,6 @@ MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& 
 /// radix tree over them (Karras 2012): a node's codes part in the highest bit in which they differ,
 /// equal codes in the middle, which bounds the depth.
 struct RunTree {
-  struct Run {
-    std::uint32_t first, count;
-  };
   struct Node {
     std::uint32_t first;  ///< left child, the right one follows; or the run
     bool is_run;

@@ -3,14 +3,13 @@
 
 #include <cstring>
 
+// GCC before 12.3 gets 16-bit high products of this fallback wrong (bug 106322); none is used here.
+#define HWY_BROKEN_EMU128 0
 #include "bvh/quantise.h"
+#include "bvh/simd_targets.h"
 #include "bvh/traverse.h"
 #include "hwy/cache_control.h"
 
-// GCC before 12.3 gets 16-bit high products of this fallback wrong (bug 106322); none is used here.
-#define HWY_BROKEN_EMU128 0
-#define HWY_DISABLED_TARGETS \
-  (HWY_SSSE3 | HWY_AVX3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bvh/treelet.cpp"
 // The order of these matters.
@@ -18,9 +17,12 @@
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
 #include "bvh/treelet_box-inl.h"
+#include "bvh/leaf-inl.h"
 #include "bvh/treelet_load-inl.h"
 #include "bvh/treelet_linear-inl.h"
 #include "bvh/treelet_sah-inl.h"
+#include "bvh/plan-inl.h"
+#include "bvh/quantise-inl.h"
 #include "bvh/emit-inl.h"
 // clang-format on
 
@@ -29,7 +31,16 @@ namespace komorebi {
 namespace HWY_NAMESPACE {
 
 extern const BuildKernel kBuildKernel;
-const BuildKernel kBuildKernel = {&code, &load, &linear, &sah, &measure, &split, &emit};
+const BuildKernel kBuildKernel = {&HWY_STR(HWY_NAMESPACE)[2],  // N_AVX2: "AVX2"
+                                  &code,
+                                  &load,
+                                  &linear,
+                                  &sah,
+                                  &measure,
+                                  &split,
+                                  &quantise_children,
+                                  &emit_treelet,
+                                  &emit_tree};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace komorebi
@@ -40,14 +51,11 @@ namespace komorebi {
 
 const BuildKernel& build_kernel() {
   // The set that rays use, or the next one below that is built here.
+  static constexpr const BuildKernel* kKernels[] = {KOMOREBI_KERNELS(kBuildKernel)};
   const char* const set = active_instruction_set();
-#if HWY_TARGETS & HWY_AVX2
-  if (std::strncmp(set, "AVX", 3) == 0) return N_AVX2::kBuildKernel;
-#endif
-#if HWY_TARGETS & HWY_SSE4
-  if (std::strcmp(set, "SSE4") == 0) return N_SSE4::kBuildKernel;
-#endif
-  static_cast<void>(set);
+  for (const BuildKernel* const* kernel = kKernels; *kernel != nullptr; ++kernel) {
+    if (std::strcmp((*kernel)->name, set) == 0) return **kernel;
+  }
   return HWY_STATIC_DISPATCH(kBuildKernel);
 }
 

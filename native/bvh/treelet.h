@@ -23,20 +23,48 @@ struct alignas(32) WideBox {
   float v[8];
 };
 
+/// Codes on a desk have 31 bits, of those in which they differ.
+inline constexpr std::uint32_t kLastCode = 0x7fffffffu;
+inline constexpr std::uint32_t kCodesBehind = 16;
+
 /// One worker's desk: a run of items, and the tree over them.
 struct Treelet {
   std::uint32_t count = 0;
+  std::uint32_t node_count = 0;
   WideBox box[kTreeletSize];
-  std::uint32_t corner[kTreeletSize][4];  ///< vertices of a triangle, and one to spare
-  std::uint32_t item[kTreeletSize];       ///< local index → item
-  std::uint32_t ids[kTreeletSize];        ///< position → local index
-  std::uint64_t code[kTreeletSize];
+  alignas(16) std::uint32_t corner[kTreeletSize][4];  ///< vertices of a triangle, and kNone
+  std::uint64_t vertex_bits[kTreeletSize];            ///< of its vertices' hashes
+  std::uint32_t item[kTreeletSize];                   ///< local index → item
+  std::uint32_t ids[kTreeletSize];                    ///< position → local index
+  std::uint32_t code[kTreeletSize + kCodesBehind];
   std::uint32_t moved[kTreeletSize];
   std::uint8_t bin[kTreeletSize][4];
   BinaryNode nodes[2 * kTreeletSize];  ///< local: children and leaf positions from 0
   PlanCost cost[2 * kTreeletSize];
-  std::uint32_t node_count = 0;
 };
+
+/// What becomes of a treelet: a forest, whose roots go into a wide node above. Nodes and leaves are
+/// counted from the treelet's first ones; those of the roots are not among them.
+struct WideTreelet {
+  std::uint32_t room = 1;  ///< at most so many roots, in a grid of that step
+  Vec3 step{0.0f};
+  std::uint32_t root_count;
+  BinaryNode root[kPlanWidth - 1];
+  float cost;              ///< of all
+  WideNode* root_nodes;    ///< of roots that are inner, in their order
+  std::byte* root_leaves;  ///< of roots that are leaves
+  WideNode* nodes;
+  std::byte* leaves;
+  std::uint32_t node_count, leaf_units;
+  std::uint32_t depth;  ///< in wide nodes, inner roots being the first
+};
+
+/// BinaryNode::info of a treelet in the tree above, which cannot be opened; `first` is its index.
+inline constexpr std::uint32_t kTreeletInfo = 0xffffffffu;
+
+inline bool is_treelet(const BinaryNode& node) {
+  return node.info == kTreeletInfo;
+}
 
 /// Runs of items as they stand in Morton order, which a top tree parts as a whole.
 struct Clusters {
@@ -54,37 +82,18 @@ struct ClusterRange {
   WideBox centres;  ///< of the centres
 };
 
-/// Where a wide tree is written to.
-struct EmitTarget {
-  const Items* items;
-  const BinaryNode* nodes;
-  const std::uint32_t* order;
-  WideNode* wide;
-  std::byte* clusters;     ///< leaves of a mesh, or null
-  std::uint32_t* entries;  ///< leaves of a scene: items
-};
-
-/// Where the next things go; leaves count in kClusterUnit, or in entries.
-struct EmitPlace {
-  std::uint32_t node, next_node, next_leaf;
-};
-
-/// Of a leaf's record, in kClusterUnit.
-inline std::uint32_t leaf_units(const BinaryNode& leaf) {
-  return ClusterView::units(leaf.leaf_count(), leaf.leaf_vertices());
-}
-
 /// The inner loops of the builders, compiled for one instruction set. They give the same tree in
 /// each: only minima, sums and products in a fixed order.
 struct BuildKernel {
+  const char* name;
   /// Codes of items [begin, end); what is left out gets the code `left_out`. Returns how many were.
   std::uint32_t (*code)(const Items& items, const MortonGrid& grid, std::uint32_t begin,
                         std::uint32_t end, std::uint32_t left_out, KeyIndex<std::uint32_t>* out);
   /// Puts items on the desk behind those that are there.
   void (*load)(const Items& items, const std::uint32_t* indices, std::uint32_t count,
                Treelet& treelet);
-  /// Builds by the codes of the treelet's items (sorted).
-  void (*linear)(const std::uint64_t* codes, LeafLimit limit, float largest_leaf, Treelet& treelet);
+  /// Builds leaves, and what is above them without its boxes, by the codes of the items (sorted).
+  void (*linear)(LeafLimit limit, float largest_leaf, Treelet& treelet);
   /// Builds by the surface-area heuristic. `scale`: 1 / a length typical of the tree.
   void (*sah)(LeafLimit limit, float scale, Treelet& treelet);
   /// Box and centres of a range.
@@ -92,8 +101,13 @@ struct BuildKernel {
   /// Parts a range by the surface-area heuristic, or in halves; both parts are not empty.
   void (*split)(const Clusters& clusters, float scale, bool in_halves, const ClusterRange& range,
                 ClusterRange* left, ClusterRange* right);
-  /// Writes the wide node that stands for `binary`, and, if asked for, all that is below it.
-  void (*emit)(const EmitTarget& to, std::uint32_t binary, bool below, EmitPlace& place);
+  /// Boxes of a wide node's children onto its grid (bvh/quantise.h).
+  void (*quantise)(const BinaryNode* nodes, const std::uint32_t* children, int count,
+                   WideNode& wide);
+  /// Makes wide nodes and leaves of what was built; areas are measured in units of 1 / scale².
+  void (*emit_treelet)(const Items& items, float scale, Treelet& treelet, WideTreelet& to);
+  /// The same for a planned tree of any size.
+  void (*emit_tree)(const Items& items, const BinaryTree& tree, WideTreelet& to);
 };
 
 /// The kernel that suits this machine (as for rays, see bvh/kernel.h).

@@ -94,48 +94,22 @@ HWY_INLINE Lanes point_box(Vector4 p) {
   return make_box(p, hn::Neg(p));
 }
 
+HWY_INLINE Vector4 three_lanes(Vector4 v) {
+  alignas(16) static constexpr std::uint32_t kMask[4] = {~0u, ~0u, ~0u, 0u};
+  const auto mask = hn::Load(hn::FixedTag<std::uint32_t, 4>(), kMask);
+  return hn::And(v, hn::BitCast(Float4(), mask));
+}
+
+/// The box of a node, whose spare lanes hold something else.
+HWY_INLINE Lanes node_box(const BinaryNode& node) {
+  const Lanes box = load_box(node.lo);
+  return make_box(three_lanes(low(box)), three_lanes(minus_high(box)));
+}
+
 HWY_INLINE void write_node(BinaryNode& node, Lanes box, std::uint32_t first, std::uint32_t info) {
   store_box(box, node.lo);
   node.first = first;
   node.info = info;
-}
-
-/// How many different vertices the given triangles have; 0 for more than `most` (≤ 8).
-HWY_INLINE std::uint32_t few_vertices(const Treelet& t, const std::uint32_t* ids,
-                                      std::uint32_t count, std::uint32_t most) {
-  // Distinct hashes are distinct vertices: most sets with too many are seen here.
-  std::uint64_t seen = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t* corner = t.corner[ids[i]];
-    for (int k = 0; k < 3; ++k) seen |= std::uint64_t{1} << ((corner[k] * 0x9E3779B1u) >> 26);
-  }
-  if (static_cast<std::uint32_t>(__builtin_popcountll(seen)) > most) return 0;
-  const hn::FixedTag<std::uint32_t, 4> d;
-  auto first = hn::Set(d, kNone), second = first;
-  const auto place = hn::Iota(d, 0);
-  std::uint32_t used = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t* corner = t.corner[ids[i]];
-    for (int k = 0; k < 3; ++k) {
-      const auto vertex = hn::Set(d, corner[k]);
-      if (!hn::AllFalse(d, hn::Or(hn::Eq(first, vertex), hn::Eq(second, vertex)))) continue;
-      if (used == most) return 0;
-      first = hn::IfThenElse(hn::Eq(place, hn::Set(d, used)), vertex, first);
-      second = hn::IfThenElse(hn::Eq(place, hn::Set(d, used - 4)), vertex, second);
-      ++used;
-    }
-  }
-  return used;
-}
-
-/// BinaryNode::info of a leaf over the run, or 0 if that would hold too much.
-HWY_INLINE std::uint32_t leaf_info(const Treelet& t, std::uint32_t begin, std::uint32_t end,
-                                   LeafLimit limit) {
-  const std::uint32_t count = end - begin;
-  if (count > limit.items) return 0;
-  if (limit.vertices == kNone) return count;
-  const std::uint32_t vertices = few_vertices(t, t.ids + begin, count, limit.vertices);
-  return vertices > 0 ? count | vertices << 8 : 0;
 }
 
 HWY_INLINE Lanes box_of_run(const Treelet& t, std::uint32_t begin, std::uint32_t end) {

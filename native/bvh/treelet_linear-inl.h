@@ -7,20 +7,14 @@ namespace {
 
 class LinearTreelet {
  public:
-  LinearTreelet(const std::uint64_t* codes, LeafLimit limit, float largest_leaf, Treelet& t)
-      : codes_(codes), limit_(limit), largest_leaf_(largest_leaf), t_(t) {}
+  LinearTreelet(LeafLimit limit, float largest_leaf, Treelet& t)
+      : limit_(limit), largest_leaf_(largest_leaf), t_(t) {}
 
   void build() {
+    // split() looks at a few codes behind the last.
+    for (std::uint32_t i = 0; i < kCodesBehind; ++i) t_.code[t_.count + i] = kLastCode;
     t_.node_count = 1;
     add(0, 0, t_.count);
-    // Children stand behind their parents, so this is bottom-up.
-    for (std::uint32_t i = t_.node_count; i-- > 0;) {
-      BinaryNode& node = t_.nodes[i];
-      if (node.info != kInnerBit) continue;
-      write_node(node,
-                 merge(load_box(t_.nodes[node.first].lo), load_box(t_.nodes[node.first + 1].lo)),
-                 node.first, kInnerBit);
-    }
   }
 
  private:
@@ -42,21 +36,28 @@ class LinearTreelet {
   }
 
   /// Where the highest bit changes in which the codes of the range differ.
-  std::uint32_t split(std::uint32_t begin, std::uint32_t end) {
-    const std::uint64_t first = codes_[begin], differ = first ^ codes_[end - 1];
+  HWY_INLINE std::uint32_t split(std::uint32_t begin, std::uint32_t end) {
+    const std::uint32_t* const codes = t_.code;
+    const std::uint32_t last = codes[end - 1], differ = codes[begin] ^ last;
     if (differ == 0) return split_equal(begin, end);
-    // All codes up to the split agree with the first in that bit and all above.
-    std::uint32_t low = begin, high = end - 1;
-    while (high - low > 1) {
-      const std::uint32_t middle = (low + high) / 2;
-      const std::uint64_t d = first ^ codes_[middle];
-      if ((d ^ differ) < d) {
-        high = middle;
-      } else {
-        low = middle;
-      }
+    // The first code on the right has that bit, and below it nothing is known.
+    const auto bit = static_cast<std::uint32_t>(31 - std::countl_zero(differ));
+    const std::uint32_t least = last >> bit << bit;
+    std::uint32_t length = end - begin;
+    while (length > kCodesBehind) {
+      const std::uint32_t half = length / 2;
+      begin += codes[begin + half - 1] < least ? half : 0;
+      length -= half;
     }
-    return high;
+    // What lies behind the range is not smaller: the order goes on.
+    const hn::CappedTag<std::int32_t, kCodesBehind> d;
+    const auto wanted = hn::Set(d, static_cast<std::int32_t>(least));
+    std::size_t smaller = 0;
+    for (std::size_t i = 0; i < kCodesBehind; i += hn::Lanes(d)) {
+      const auto some = hn::LoadU(d, reinterpret_cast<const std::int32_t*>(codes + begin + i));
+      smaller += hn::CountTrue(d, hn::Lt(some, wanted));
+    }
+    return begin + static_cast<std::uint32_t>(smaller);
   }
 
   /// Items of one cell: halves along the axis on which their centres spread most.
@@ -109,14 +110,13 @@ class LinearTreelet {
     }
   }
 
-  const std::uint64_t* codes_;
   LeafLimit limit_;
   float largest_leaf_;
   Treelet& t_;
 };
 
-void linear(const std::uint64_t* codes, LeafLimit limit, float largest_leaf, Treelet& treelet) {
-  LinearTreelet(codes, limit, largest_leaf, treelet).build();
+void linear(LeafLimit limit, float largest_leaf, Treelet& treelet) {
+  LinearTreelet(limit, largest_leaf, treelet).build();
 }
 
 }  // namespace

@@ -25,12 +25,6 @@ class VertexReader {
   float tail_[4] = {};
 };
 
-HWY_INLINE Vector4 three_lanes(Vector4 v) {
-  alignas(16) static constexpr std::uint32_t kMask[4] = {~0u, ~0u, ~0u, 0u};
-  const auto mask = hn::Load(hn::FixedTag<std::uint32_t, 4>(), kMask);
-  return hn::And(v, hn::BitCast(Float4(), mask));
-}
-
 /// False only if the triangle's normal is certainly not null, as is_degenerate would find in
 /// double: each side is rounded once and each product once, far less than the bound here.
 HWY_INLINE bool may_be_degenerate(Vector4 a, Vector4 b, Vector4 c) {
@@ -120,6 +114,11 @@ std::uint32_t code(const Items& items, const MortonGrid& grid, std::uint32_t beg
   return dropped;
 }
 
+/// One bit of 64: different bits are different vertices.
+HWY_INLINE std::uint64_t vertex_bit(std::uint32_t vertex) {
+  return std::uint64_t{1} << ((vertex * 0x9E3779B1u) >> 26);
+}
+
 void load(const Items& items, const std::uint32_t* indices, std::uint32_t count, Treelet& t) {
   const VertexReader vertex(items);
   const bool triangles = items.are_triangles();
@@ -135,6 +134,8 @@ void load(const Items& items, const std::uint32_t* indices, std::uint32_t count,
     if (triangles) {
       const std::uint32_t* corner = &items.tri2vtx[3 * std::size_t{item}];
       for (int k = 0; k < 3; ++k) t.corner[at][k] = corner[k];
+      t.corner[at][3] = kNone;
+      t.vertex_bits[at] = vertex_bit(corner[0]) | vertex_bit(corner[1]) | vertex_bit(corner[2]);
       store_box(triangle_box(vertex(corner[0]), vertex(corner[1]), vertex(corner[2])), t.box[at].v);
     } else {
       const Aabb& box = items.boxes[item];

@@ -24,10 +24,7 @@ struct ClusterList {
   std::uint32_t* ids;
   std::uint32_t* moved;
   std::uint8_t (*bin)[4];
-  HWY_INLINE Lanes box(std::uint32_t id) const {
-    const Lanes box = load_box(cluster[id].lo);
-    return make_box(three_lanes(low(box)), three_lanes(minus_high(box)));
-  }
+  HWY_INLINE Lanes box(std::uint32_t id) const { return node_box(cluster[id]); }
   HWY_INLINE std::uint32_t weight(std::uint32_t id) const { return cluster[id].info; }
 };
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
+#include <limits>
 
 #include "bvh/binary_tree.h"
 
@@ -14,30 +16,38 @@ inline constexpr float kNodeCost = 1.0f;
 inline constexpr float kLeafCost = 1.0f;
 
 /// The cheapest wide tree over a binary one, by dynamic programming (Ylitie, Karras, Laine 2017,
-/// §3.1): cost[i] is the surface-area cost of a subtree as a forest of at most i wide nodes or
-/// leaves, for i in [1, 7]. A node is decided from its children alone, and its decisions fit into
-/// BinaryNode::info: for every i the share k of the left child (3 bits each), whether i − 1 was no
-/// worse (1 bit each), and how many children the node has as a wide node.
-struct PlanCost {
-  float at[kPlanWidth];  ///< [0] unused
+/// §3.1): at[i] is the surface-area cost of a subtree as a forest of at most i + 1 wide nodes or
+/// leaves, i < 7; the last entry fills the lanes. A node is decided from its children alone, and
+/// its decisions fit into BinaryNode::info: for every size i in [2, 8] of a forest the share k of
+/// the left child (3 bits each), for i < 8 whether i − 1 was no worse (1 bit each), and how many
+/// children the node has as a wide node.
+struct alignas(32) PlanCost {
+  float at[kPlanWidth];
 };
 
+inline constexpr float kNoPlan = std::numeric_limits<float>::infinity();
+
+/// What is one node or leaf whatever room there is.
+inline PlanCost plan_closed(float cost) {
+  PlanCost plan;
+  for (float& c : plan.at) c = cost;
+  plan.at[kPlanWidth - 1] = kNoPlan;
+  return plan;
+}
 inline PlanCost plan_leaf(float area) {
-  PlanCost cost;
-  for (float& c : cost.at) c = area * kLeafCost;
-  return cost;
+  return plan_closed(area * kLeafCost);
 }
 
-/// Returns the `info` of an inner node; `cost` is written.
+/// Returns the `info` of an inner node; `cost` is written. What plan-inl.h does in lanes.
 inline std::uint32_t plan_inner(float area, const PlanCost& left, const PlanCost& right,
                                 PlanCost* cost) {
   std::uint32_t info = kInnerBit;
   float split[kPlanWidth + 1];
   for (int i = 2; i <= kPlanWidth; ++i) {
-    float best = left.at[1] + right.at[i - 1 < 7 ? i - 1 : 7];
+    float best = left.at[0] + right.at[i - 2];
     std::uint32_t share = 1;
     for (int k = 2; k < i; ++k) {
-      const float c = left.at[k] + right.at[i - k];
+      const float c = left.at[k - 1] + right.at[i - k - 1];
       share = c < best ? static_cast<std::uint32_t>(k) : share;
       best = c < best ? c : best;
     }
@@ -50,16 +60,16 @@ inline std::uint32_t plan_inner(float area, const PlanCost& left, const PlanCost
   }
   info |= static_cast<std::uint32_t>(children - 1) << 27;
   float last = area * kNodeCost + split[children];
-  cost->at[0] = 0.0f;
-  cost->at[1] = last;
+  cost->at[0] = last;
   for (int i = 2; i < kPlanWidth; ++i) {
     if (last <= split[i]) {
       info |= 1u << (21 + i - 2);
     } else {
       last = split[i];
     }
-    cost->at[i] = last;
+    cost->at[i - 1] = last;
   }
+  cost->at[kPlanWidth - 1] = kNoPlan;
   return info;
 }
 
@@ -71,62 +81,95 @@ inline bool is_coarse(const Vec3& step, const BinaryNode& node) {
   return half_area(Aabb{box.lo, box.hi + 2.0f * step}) > 1.25f * half_area(box);
 }
 
-/// Writes the nodes of the forest that stands for `node` within `most` places; returns how many.
-inline int collect_forest(const BinaryNode* nodes, std::uint32_t node, int most, const Vec3& step,
-                          std::uint32_t* forest) {
-  const std::uint32_t info = nodes[node].info;
-  const bool is_leaf = nodes[node].is_leaf();
-  while (most > 1 && !is_leaf && ((info >> (21 + most - 2)) & 1u) != 0) --most;
-  if (most == 1 || is_leaf || is_coarse(step, nodes[node])) {
-    forest[0] = node;
-    return 1;
+/// Nodes that are still to be opened, each with the most nodes that may stand for it.
+class OpenNodes {
+ public:
+  explicit OpenNodes(const BinaryNode* nodes) : nodes_(nodes) {}
+
+  void push(std::uint32_t node, int room) {
+    node_[count_] = node;
+    room_[count_++] = room;
   }
-  const int share = static_cast<int>((info >> (3 * (most - 2))) & 7u);
-  const int count = collect_forest(nodes, nodes[node].first, share, step, forest);
-  return count + collect_forest(nodes, nodes[node].first + 1, most - share, step, forest + count);
+  /// Both children, left one on top; together they take `room` ≥ 2 places at most.
+  void push_children(std::uint32_t node, int room) {
+    const std::uint32_t left = nodes_[node].first;
+    const int share = static_cast<int>((nodes_[node].info >> (3 * (room - 2))) & 7u);
+    push(left + 1, room - share);
+    push(left, share);
+  }
+  /// Both children, with as many places as the node has children as a wide node.
+  void push_wide(std::uint32_t node) {
+    push_children(node, static_cast<int>((nodes_[node].info >> 27) & 7u) + 1);
+  }
+  /// The next node that stays as it is in a wide node of grid step `step`; false: none is left.
+  bool pop(const Vec3& step, std::uint32_t* node, int* room) {
+    while (count_ > 0) {
+      const std::uint32_t at = node_[--count_];
+      const BinaryNode& it = nodes_[at];
+      *node = at;
+      *room = room_[count_];
+      if (it.is_leaf()) return true;
+      // The largest size up to `room` that is better than the next smaller one.
+      const std::uint32_t better = ~(it.info >> 21) & ((1u << (*room - 1)) - 1u);
+      if (better == 0 || is_coarse(step, it)) return true;
+      push_children(at, 33 - std::countl_zero(better));
+    }
+    return false;
+  }
+
+ private:
+  const BinaryNode* nodes_;
+  int count_ = 0;
+  std::uint32_t node_[kPlanWidth];
+  int room_[kPlanWidth];
+};
+
+/// The step of the grid of a wide node, or a little less.
+inline Vec3 step_of(const BinaryNode& node) {
+  const Aabb box = node.box();
+  return (box.hi - box.lo) / 255.0f;
 }
 
 /// Children of a wide node: first those that are wide nodes themselves; of either kind the larger
 /// ones last, where traversal begins, so that rays that are blocked end sooner.
+class ChildOrder {
+ public:
+  void add(const BinaryNode& child) {
+    const std::uint32_t area = std::bit_cast<std::uint32_t>(half_area(child.box()));
+    const std::uint32_t key = area | (child.is_leaf() ? kInnerBit : 0u);
+    inner += child.is_leaf() ? 0 : 1;
+    // Each goes behind all with a smaller key, and behind those before it with the same.
+    place[count] = 0;
+    for (int k = 0; k < count; ++k) {
+      const int behind = key_[k] <= key ? 1 : 0;
+      place[count] += behind;
+      place[k] += 1 - behind;
+    }
+    key_[count++] = key;
+  }
+  int count = 0, inner = 0;
+  int place[kPlanWidth];  ///< of child i
+
+ private:
+  std::uint32_t key_[kPlanWidth];
+};
+
 struct PlannedChildren {
   int count, inner;
 };
 
-/// The children of the wide node that stands for `node`: at most kPlanWidth, and one if it is a
-/// leaf, which then is the only one.
+/// The children of the wide node that stands for `node`, which is inner: at most kPlanWidth.
 inline PlannedChildren planned_children(const BinaryNode* nodes, std::uint32_t node,
                                         std::uint32_t* children) {
-  children[0] = node;
-  if (nodes[node].is_leaf()) return {1, 0};
-  const std::uint32_t info = nodes[node].info, left = nodes[node].first;
-  const Aabb box = nodes[node].box();
-  const Vec3 step = (box.hi - box.lo) / 255.0f;
-  const int most = static_cast<int>((info >> 27) & 7u) + 1;
-  const int share = static_cast<int>((info >> (3 * (most - 2))) & 7u);
+  const Vec3 step = step_of(nodes[node]);
+  OpenNodes open(nodes);
+  open.push_wide(node);
+  ChildOrder order;
   std::uint32_t all[kPlanWidth];
-  int count = collect_forest(nodes, left, share, step, all);
-  count += collect_forest(nodes, left + 1, most - share, step, all + count);
-  PlannedChildren planned{count, 0};
-  float area[kPlanWidth];
-  for (int i = 0; i < count; ++i) {
-    const bool is_leaf = nodes[all[i]].is_leaf();
-    const float its = half_area(nodes[all[i]].box());
-    // By insertion behind what is not larger; leaves behind all inner ones.
-    const int from = is_leaf ? planned.inner : 0;
-    int at = is_leaf ? i : planned.inner;
-    for (int k = i; k > at; --k) {
-      children[k] = children[k - 1];
-      area[k] = area[k - 1];
-    }
-    for (; at > from && area[at - 1] > its; --at) {
-      children[at] = children[at - 1];
-      area[at] = area[at - 1];
-    }
-    children[at] = all[i];
-    area[at] = its;
-    planned.inner += is_leaf ? 0 : 1;
-  }
-  return planned;
+  int room = 0;
+  while (open.pop(step, &all[order.count], &room)) order.add(nodes[all[order.count]]);
+  for (int i = 0; i < order.count; ++i) children[order.place[i]] = all[i];
+  return {order.count, order.inner};
 }
 
 }  // namespace komorebi

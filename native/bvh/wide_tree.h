@@ -2,7 +2,6 @@
 
 #include <cstddef>
 
-#include "bvh/binary_tree.h"
 #include "bvh/items.h"
 #include "bvh/topology.h"
 #include "bvh/wide_node.h"
@@ -27,8 +26,8 @@ struct WideTree {
 WideTree build_wide_tree(const Items& items, Builder builder, ThreadPool& pool,
                          const Cancel& cancel);
 
-/// The wide tree that a planned binary tree stands for.
-WideTree emit_wide_tree(const Items& items, const BinaryTree& tree, ThreadPool& pool,
-                        const Cancel& cancel);
+/// The engine's own builders; the tree is empty if every item is left out.
+WideTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cancel);
+WideTree grow_sah(const Items& items, ThreadPool& pool, const Cancel& cancel);
 
 }  // namespace komorebi

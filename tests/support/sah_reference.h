@@ -4,9 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "bvh/binary_tree.h"
 #include "bvh/items.h"
+#include "bvh/triangle_cluster.h"
 #include "bvh/wide_plan.h"
+#include "bvh/wide_tree.h"
 #include "core/aabb.h"
 
 namespace komorebi::testing {
@@ -29,7 +30,7 @@ class SahReference {
   double cost() {
     Aabb all;
     for (const std::uint32_t i : order_) all = united(all, boxes_[i]);
-    return double(build(0, order_.size()).at[1]) / double(half_area(all));
+    return double(build(0, order_.size()).at[0]) / double(half_area(all));
   }
 
  private:
@@ -102,17 +103,42 @@ class SahReference {
   std::vector<std::uint32_t> order_;
 };
 
-/// The same cost of a tree that a builder made, recounted from its wide nodes.
-inline double wide_cost(const BinaryTree& tree, std::uint32_t node = 0) {
-  const BinaryNode* const nodes = tree.nodes.data();
-  const double unit = double(half_area(nodes[0].box()));
-  const double area = double(half_area(nodes[node].box())) / unit;
-  if (nodes[node].is_leaf()) return area * double(kLeafCost);
-  std::uint32_t children[kPlanWidth];
-  const PlannedChildren planned = planned_children(nodes, node, children);
-  double cost = area * double(kNodeCost);
-  for (int i = 0; i < planned.count; ++i) cost += wide_cost(tree, children[i]);
+/// Calls visit(box, is_leaf) with the exact box of every wide node and leaf, and returns the
+/// node's.
+template <class Visit>
+Aabb visit_boxes(const WideTree& tree, const Visit& visit, std::uint32_t index = 0) {
+  const WideNode& node = tree.nodes[index];
+  Aabb all;
+  for (int i = 0; i < node.child_count(); ++i) {
+    Aabb box;
+    if (i < node.inner_count()) {
+      box = visit_boxes(tree, visit, node.child_node(i));
+    } else {
+      const ClusterView leaf(tree.clusters.data() + node.child_leaf(i) * kClusterUnit);
+      for (std::uint32_t k = 0; k < leaf.triangle_count(); ++k) {
+        box = united(
+            box, triangle_bounds(leaf.position(k, 0), leaf.position(k, 1), leaf.position(k, 2)));
+      }
+      visit(box, true);
+    }
+    all = united(all, box);
+  }
+  visit(all, false);
+  return all;
+}
+
+/// The same cost of a tree over triangles that a builder made, but not in units of the root's area:
+/// that of all nodes and leaves whose boxes lie within `bounds`.
+inline double wide_cost_within(const WideTree& tree, const Aabb& bounds) {
+  double cost = 0.0;
+  visit_boxes(tree, [&](const Aabb& box, bool is_leaf) {
+    if (contains(bounds, box)) cost += double(half_area(box) * (is_leaf ? kLeafCost : kNodeCost));
+  });
   return cost;
+}
+
+inline double wide_cost(const WideTree& tree) {
+  return wide_cost_within(tree, tree.bounds) / double(half_area(tree.bounds));
 }
 
 }  // namespace komorebi::testing
