@@ -1,5 +1,5 @@
-// One cluster of triangles and many rays of one point. Included once per instruction set by
-// traverse_simd.cpp, without a guard.
+// One cluster of triangles and many rays. Included once per instruction set by traverse_simd.cpp,
+// without a guard.
 
 HWY_BEFORE_NAMESPACE();
 namespace komorebi {
@@ -8,56 +8,47 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Rays of one point in one instance.
+/// Rays in one instance.
 struct LocalBundle {
-  Vec3 origin;
-  Directions rays;
+  Bundle rays;
   BundleSlab slab;
   BundleShear shear;
-  std::uint32_t self;  ///< primitive of the instance that is never hit, or kNone
+  std::int32_t self[kBundle];  ///< primitive of the instance that is never hit, or kNone
 
   /// Ray i as the triangle test takes it.
   LocalRay ray(std::uint32_t i) const {
     LocalRay local;
-    const Vec3 direction(rays.d[0][i], rays.d[1][i], rays.d[2][i]);
     for (int axis = 0; axis < 3; ++axis) {
       const bool backward = slab.side[axis][i] != 0;
-      local.slab.near_origin[axis] = backward ? slab.from_upper[axis] : slab.from_lower[axis];
-      local.slab.far_origin[axis] = backward ? slab.from_lower[axis] : slab.from_upper[axis];
+      const float lower = slab.from_lower[axis][i], upper = slab.from_upper[axis][i];
+      local.slab.near_origin[axis] = backward ? upper : lower;
+      local.slab.far_origin[axis] = backward ? lower : upper;
       local.slab.inverse[axis] = backward ? -slab.inverse[axis][i] : slab.inverse[axis][i];
     }
-    local.shear = make_shear_ray(origin, direction);
+    local.shear = make_shear_ray(Vec3(rays.o[0][i], rays.o[1][i], rays.o[2][i]),
+                                 Vec3(rays.d[0][i], rays.d[1][i], rays.d[2][i]));
     local.range = Interval{slab.begin[i], -slab.minus_end[i]};
-    local.t_min = 0.0f;
+    local.t_min = rays.t_min[i];
     local.t_max = rays.t_max[i];
     return local;
   }
 };
 
-/// A cluster as rays of one point meet it: vertices minus the origin, and the corners' indices.
-class ClusterOfPoint {
+/// A cluster with its corners' indices taken apart.
+class OpenCluster {
  public:
-  HWY_INLINE ClusterOfPoint(const ClusterView& cluster, const LocalBundle& bundle)
-      : cluster_(cluster), used_((1u << cluster.triangle_count()) - 1) {
-    const BoxTag d;
+  HWY_INLINE explicit OpenCluster(const std::byte* record)
+      : cluster_(record),
+        used_((1u << cluster_.triangle_count()) - 1),
+        vertex_count_(cluster_.vertex_count()),
+        coordinates_(reinterpret_cast<const float*>(cluster_.coordinates())) {
     const IndexTag di;
-    const std::size_t n = cluster.vertex_count();
-    const auto* coordinates = reinterpret_cast<const float*>(cluster.coordinates());
-    const auto* corners = reinterpret_cast<const std::uint16_t*>(cluster.corners());
-    const auto* primitives = reinterpret_cast<const std::int32_t*>(coordinates + 3 * n);
-    const auto self = hn::Set(di, static_cast<std::int32_t>(bundle.self));
-    for (std::size_t part = 0; part < kClusterVertices; part += kLanes) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {  // behind the last vertex is nothing of use
-        const auto x = hn::LoadU(d, coordinates + axis * n + part);
-        hn::Store(hn::Sub(x, hn::Set(d, bundle.origin[static_cast<int>(axis)])), d,
-                  vertex_ + axis * kClusterVertices + part);
-      }
+    const auto* corners = reinterpret_cast<const std::uint16_t*>(cluster_.corners());
+    for (std::size_t part = 0; part < kClusterTriangles; part += kLanes) {
       const auto packed = hn::PromoteTo(di, hn::LoadU(CornerTag(), corners + part));
       set_corner(0, part, packed);
       set_corner(1, part, hn::ShiftRight<3>(packed));
       set_corner(2, part, hn::ShiftRight<6>(packed));
-      used_ &=
-          ~(bits_of(hn::RebindMask(d, hn::Eq(hn::LoadU(di, primitives + part), self))) << part);
     }
   }
 
@@ -65,16 +56,21 @@ class ClusterOfPoint {
   HWY_INLINE bool blocks(const LocalBundle& bundle, std::uint32_t i) const {
     const BundleShear& shear = bundle.shear;
     const BoxTag d;
+    const IndexTag di;
     HWY_ALIGN float x[kClusterVertices], y[kClusterVertices];
+    const float* at_x = coordinate(shear.x[i]);
+    const float* at_y = coordinate(shear.y[i]);
+    const float* at_z = coordinate(shear.z[i]);
+    const auto sx = hn::Set(d, shear.sx[i]), sy = hn::Set(d, shear.sy[i]);
+    const auto o_x = hn::Set(d, shear.o[0][i]), o_y = hn::Set(d, shear.o[1][i]),
+               o_z = hn::Set(d, shear.o[2][i]);
     for (std::size_t part = 0; part < kClusterVertices; part += kLanes) {
-      const auto z = hn::Load(d, vertex_ + shear.z[i] + part);
-      hn::Store(
-          hn::Sub(hn::Load(d, vertex_ + shear.x[i] + part), hn::Mul(hn::Set(d, shear.sx[i]), z)), d,
-          x + part);
-      hn::Store(
-          hn::Sub(hn::Load(d, vertex_ + shear.y[i] + part), hn::Mul(hn::Set(d, shear.sy[i]), z)), d,
-          y + part);
+      const auto z = hn::Sub(hn::LoadU(d, at_z + part), o_z);
+      hn::Store(hn::Sub(hn::Sub(hn::LoadU(d, at_x + part), o_x), hn::Mul(sx, z)), d, x + part);
+      hn::Store(hn::Sub(hn::Sub(hn::LoadU(d, at_y + part), o_y), hn::Mul(sy, z)), d, y + part);
     }
+    const auto* primitives = reinterpret_cast<const std::int32_t*>(coordinate(3));
+    const auto self = hn::Set(di, bundle.self[i]);
     for (std::size_t part = 0; part < kClusterTriangles; part += kLanes) {
       const auto a_x = corner(x, 0, part), a_y = corner(y, 0, part);
       const auto b_x = corner(x, 1, part), b_y = corner(y, 1, part);
@@ -84,8 +80,9 @@ class ClusterOfPoint {
       const auto w = hn::Sub(hn::Mul(b_x, a_y), hn::Mul(b_y, a_x));
       const auto least = hn::Min(hn::Min(u, v), w), most = hn::Max(hn::Max(u, v), w);
       const auto zero = hn::Zero(d);
-      const unsigned inside =
-          bits_of(hn::Or(hn::Ge(least, zero), hn::Le(most, zero))) & (used_ >> part);
+      const auto other = hn::RebindMask(d, hn::Ne(hn::LoadU(di, primitives + part), self));
+      const auto meets = hn::And(hn::Or(hn::Ge(least, zero), hn::Le(most, zero)), other);
+      const unsigned inside = bits_of(meets) & (used_ >> part);
       if (inside == 0) continue;
       const auto exact = hn::And(hn::And(hn::Ne(u, zero), hn::Ne(v, zero)), hn::Ne(w, zero));
       const unsigned sure = inside & bits_of(exact);
@@ -118,6 +115,11 @@ class ClusterOfPoint {
     }
   }
 
+  /// Of all vertices; behind the last one is nothing of use.
+  HWY_INLINE const float* coordinate(std::int32_t axis) const {
+    return coordinates_ + static_cast<std::uint32_t>(axis) * vertex_count_;
+  }
+
   /// A corner's coordinate of triangles part…part + lanes − 1, from that of all vertices.
   HWY_INLINE BoxVec corner(const float* coordinate, std::size_t which, std::size_t part) const {
     const BoxTag d;
@@ -145,23 +147,21 @@ class ClusterOfPoint {
   HWY_INLINE unsigned are_in_reach(const LocalBundle& bundle, std::uint32_t i, const BoxVec& u,
                                    const BoxVec& v, const BoxVec& w, std::size_t part) const {
     const BoxTag d;
-    const auto sz = hn::Set(d, bundle.shear.sz[i]);
-    const float* depth = vertex_ + bundle.shear.z[i];
+    const auto sz = hn::Set(d, bundle.shear.sz[i]), o_z = hn::Set(d, bundle.shear.o[2][i]);
+    const float* depth = coordinate(bundle.shear.z[i]);
     const auto determinant = hn::Add(hn::Add(u, v), w);
-    const auto of_a = hn::Mul(u, hn::Mul(sz, corner(depth, 0, part)));
-    const auto of_b = hn::Mul(v, hn::Mul(sz, corner(depth, 1, part)));
-    const auto of_c = hn::Mul(w, hn::Mul(sz, corner(depth, 2, part)));
+    const auto of_a = hn::Mul(u, hn::Mul(sz, hn::Sub(corner(depth, 0, part), o_z)));
+    const auto of_b = hn::Mul(v, hn::Mul(sz, hn::Sub(corner(depth, 1, part), o_z)));
+    const auto of_c = hn::Mul(w, hn::Mul(sz, hn::Sub(corner(depth, 2, part), o_z)));
     const auto t = hn::Div(hn::Add(hn::Add(of_a, of_b), of_c), determinant);
     auto good =
         hn::And(hn::Ne(determinant, hn::Zero(d)), hn::Le(hn::Abs(t), hn::Set(d, kFloatMax)));
 
-    const auto* coordinates = reinterpret_cast<const float*>(cluster_.coordinates());
     BoxVec lo[3], hi[3];
     auto largest = hn::Zero(d);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float* coordinate = coordinates + axis * cluster_.vertex_count();
-      const auto a = corner(coordinate, 0, part), b = corner(coordinate, 1, part),
-                 c = corner(coordinate, 2, part);
+      const float* of = coordinate(static_cast<std::int32_t>(axis));
+      const auto a = corner(of, 0, part), b = corner(of, 1, part), c = corner(of, 2, part);
       lo[axis] = hn::Min(hn::Min(a, b), c);
       hi[axis] = hn::Max(hn::Max(a, b), c);
       largest = hn::Max(largest, hn::Max(hn::Abs(lo[axis]), hn::Abs(hi[axis])));
@@ -171,10 +171,10 @@ class ClusterOfPoint {
     auto minus_end = hn::Set(d, bundle.slab.minus_end[i]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto inverse = hn::Set(d, bundle.slab.inverse[axis][i]);
-      const auto lower = hn::Sub(hn::Sub(lo[axis], padding),
-                                 hn::Set(d, bundle.slab.from_lower[static_cast<int>(axis)]));
-      const auto minus_upper = hn::Sub(hn::Set(d, bundle.slab.from_upper[static_cast<int>(axis)]),
-                                       hn::Add(hi[axis], padding));
+      const auto lower =
+          hn::Sub(hn::Sub(lo[axis], padding), hn::Set(d, bundle.slab.from_lower[axis][i]));
+      const auto minus_upper =
+          hn::Sub(hn::Set(d, bundle.slab.from_upper[axis][i]), hn::Add(hi[axis], padding));
       const bool backward = bundle.slab.side[axis][i] != 0;
       begin = hn::Max(begin, hn::Mul(backward ? minus_upper : lower, inverse));
       minus_end = hn::Max(minus_end, hn::Mul(backward ? lower : minus_upper, inverse));
@@ -182,8 +182,8 @@ class ClusterOfPoint {
     const auto end = hn::Neg(minus_end);
     good = hn::And(good, hn::Le(begin, end));
     const auto moved = hn::Max(begin, hn::Min(t, end));
-    good = hn::And(
-        good, hn::And(hn::Gt(moved, hn::Zero(d)), hn::Lt(moved, hn::Set(d, bundle.rays.t_max[i]))));
+    good = hn::And(good, hn::And(hn::Gt(moved, hn::Set(d, bundle.rays.t_min[i])),
+                                 hn::Lt(moved, hn::Set(d, bundle.rays.t_max[i]))));
     return bits_of(good);
   }
 
@@ -202,9 +202,10 @@ class ClusterOfPoint {
     return false;
   }
 
-  const ClusterView& cluster_;
-  unsigned used_;
-  HWY_ALIGN float vertex_[3 * kClusterVertices];
+  const ClusterView cluster_;
+  const unsigned used_;
+  const std::uint32_t vertex_count_;
+  const float* const coordinates_;
   HWY_ALIGN std::int32_t corner_[3][kClusterTriangles];
 };
 

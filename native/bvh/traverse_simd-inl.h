@@ -249,16 +249,6 @@ void intersect(const SceneView& scene, const RaySpan& rays, Hit* hits) {
   }
 }
 
-void occluded(const SceneView& scene, const RaySpan& rays, std::uint32_t* bits) {
-  for (std::uint32_t i = 0; i < rays.count; i += 32) {
-    std::uint32_t word = 0;
-    for (std::uint32_t k = 0; k < 32 && i + k < rays.count; ++k) {
-      if (trace<true>(scene, rays[i + k], OpaqueFilter{}).valid()) word |= 1u << k;
-    }
-    bits[i / 32] = word;
-  }
-}
-
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace komorebi

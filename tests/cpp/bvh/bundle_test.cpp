@@ -2,11 +2,13 @@
 // against brute force, for bundles of all sizes, instances of all kinds, masks and bad rays.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "support/bundle_list.h"
 #include "support/ray_kinds.h"
+#include "support/ray_list.h"
 #include "support/shared_meshes.h"
 #include "support/test_scene.h"
 
@@ -14,6 +16,7 @@ namespace komorebi {
 namespace {
 
 using testing::BundleList;
+using testing::RayList;
 using testing::RayMaker;
 using testing::TestScene;
 using testing::TriangleMesh;
@@ -147,6 +150,56 @@ TEST(BundlesOfInstances, MirroredShearedAndFlattenedWithMasks) {
   EXPECT_GT(blocked[0], blocked[2]);
   EXPECT_GT(blocked[1], 20u);
   EXPECT_EQ(blocked[3], 0u);
+}
+
+TEST(BundlesOfInstances, SpansOfRaysThatShareNothing) {
+  TestScene scene(2);
+  const TriangleMesh mesh = sheet();
+  scene.add_mesh(mesh);
+  for (int i = 0; i < 12; ++i) {
+    scene.add_instance(0, Mat3d(1.0), Vec3(0, 0, 0.5f * float(i)),
+                       i % 3 == 0   ? kMaskAll
+                       : i % 3 == 1 ? kMaskCamera
+                                    : kMaskShadow);
+  }
+  scene.commit();
+  RayMaker maker(mesh, Aabb{Vec3(-1, -1, -1), Vec3(1, 1, 7)}, 3);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> number(0.0f, 1.0f);
+  RayList rays;
+  for (std::uint32_t i = 0; i < 1501; ++i) {
+    Ray ray = maker.make(static_cast<int>(i) % RayMaker::kKinds);
+    ray.mask = i % 5 == 0   ? kMaskAll
+               : i % 5 < 3  ? kMaskCamera
+               : i % 5 == 3 ? kMaskShadow
+                            : RayMask{};
+    if (i % 4 == 1) ray.t_min = number(random);
+    if (i % 4 == 2) ray.t_max = 3.0f * number(random);
+    if (i % 7 == 0) ray.self_instance = i % 12, ray.self_primitive = i % 288;
+    rays.push_back(ray);
+  }
+  std::vector<bool> wanted;
+  for (std::uint32_t i = 0; i < rays.size(); ++i) {
+    wanted.push_back(occluded_brute_force(scene.view(), rays[i]));
+  }
+  EXPECT_GT(std::count(wanted.begin(), wanted.end(), true), 200);
+  EXPECT_GT(std::count(wanted.begin(), wanted.end(), false), 200);
+  for (const std::string& isa : built_instruction_sets()) {
+    force_instruction_set(isa);
+    for (const std::uint32_t size : {1u, 31u, 256u, 257u, rays.size()}) {
+      for (std::uint32_t first = 0; first < rays.size(); first += size) {
+        const std::uint32_t count = std::min(size, rays.size() - first);
+        std::vector<std::uint32_t> bits((count + 31) / 32 + 1, 0xdeadbeefu);
+        occluded(scene.view(), rays.span(first, count), bits.data());
+        EXPECT_EQ(bits.back(), 0xdeadbeefu) << isa << " writes too far";
+        for (std::uint32_t i = 0; i < 32 * ((count + 31) / 32); ++i) {
+          const bool got = (bits[i / 32] >> (i % 32)) & 1u;
+          ASSERT_EQ(got, i < count && wanted[first + i]) << isa << ", ray " << first + i;
+        }
+      }
+    }
+  }
+  force_instruction_set("");
 }
 
 TEST(BundlesOfInstances, TheirOwnTriangleIsNotHit) {
