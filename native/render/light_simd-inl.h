@@ -17,8 +17,8 @@ HWY_INLINE void store(const Vec3Lanes& v, float* const (&columns)[3], std::size_
   hn::StoreU(v.z, d, columns[2] + i);
 }
 
-/// Calls sample(normal, geometric normal, bits x, bits y, where the result goes) for all rays of
-/// all points; `prepare` works out what the rays of a point share from its normal.
+/// Calls sample(shared, first point, bits x, bits y, where the result goes) for all rays of all
+/// points; `prepare` works out what the rays of points share.
 template <class Prepare, class Sample>
 HWY_INLINE void for_each_ray(const LightBlock& block, const Prepare& prepare,
                              const Sample& sample) {
@@ -27,27 +27,24 @@ HWY_INLINE void for_each_ray(const LightBlock& block, const Prepare& prepare,
       dimension_hash(static_cast<std::uint32_t>(kDimensionVertex) +
                      static_cast<std::uint32_t>(kVertexLightDirection));
   for (std::size_t p = 0; p < block.point_count; p += hn::Lanes(du)) {
-    const Vec3Lanes normal = load(block.normal, p);
-    const Vec3Lanes geometric = load(block.geometric_normal, p);
     const PairSampler sampler(hn::LoadU(du, block.pixel_seed + p), light_hash);
     const Uint first = hn::LoadU(du, block.first_index + p);
-    const auto shared = prepare(normal);
+    const auto shared = prepare(p);
     for (std::uint32_t j = 0; j < block.rays_per_point; ++j) {
       Uint x, y;
       sampler.bits(hn::Add(first, u32(j)), x, y);
-      sample(shared, normal, geometric, x, y, std::size_t{j} * block.stride + p);
+      sample(shared, p, x, y, std::size_t{j} * block.stride + p);
     }
   }
 }
 
 void ambient(const RenderContext&, const LightBlock& block) {
   for_each_ray(
-      block, [](const Vec3Lanes& normal) HWY_ATTR { return FrameLanes(normal); },
-      [&](const FrameLanes& frame, const Vec3Lanes&, const Vec3Lanes& geometric, Uint x, Uint y,
-          std::size_t to) HWY_ATTR {
+      block, [&](std::size_t p) HWY_ATTR { return FrameLanes(load(block.normal, p)); },
+      [&](const FrameLanes& frame, std::size_t p, Uint x, Uint y, std::size_t to) HWY_ATTR {
         const Vec3Lanes direction = frame.to_world(
             cosine_hemisphere_disk_lanes(to_unit_float_lanes(x), to_unit_float_lanes(y)));
-        const auto above = hn::Gt(dot(direction, geometric), f32(0.0f));
+        const auto above = hn::Gt(dot(direction, load(block.geometric_normal, p)), f32(0.0f));
         const Float weight = hn::IfThenElseZero(above, f32(1.0f));
         store(direction, block.direction, to);
         store({weight, weight, weight}, block.contribution, to);
@@ -55,28 +52,41 @@ void ambient(const RenderContext&, const LightBlock& block) {
 }
 
 void product(const RenderContext& context, const LightBlock& block) {
-  const EnvironmentView& e = context.environment;
-  const ProductView& p = context.product;
-  const float* const m = entries(e.texture_from_world);
+  const float* const m = entries(context.environment.texture_from_world);
   const float albedo[3] = {context.albedo.x, context.albedo.y, context.albedo.z};
+  ProductSteps steps(context.environment, context.product);
+  std::size_t points[ProductSteps::kMost], places[ProductSteps::kMost];
+  const auto finish = [&]() HWY_ATTR {
+    steps.choose();
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      const Vec3Lanes normal = load(block.normal, points[i]);
+      const EnvironmentSampleLanes s = steps.sample(i);
+      const Float zero = f32(0.0f);
+      const Float cosine = dot(s.direction, normal);
+      const auto lit =
+          hn::And(hn::And(hn::Gt(cosine, zero), hn::Gt(s.pdf, zero)),
+                  hn::Gt(dot(s.direction, load(block.geometric_normal, points[i])), zero));
+      const Float weight = f32(kInvPi) * cosine / s.pdf;
+      store(s.direction, block.direction, places[i]);
+      store({hn::IfThenElseZero(lit, f32(albedo[0]) * s.radiance.x * weight),
+             hn::IfThenElseZero(lit, f32(albedo[1]) * s.radiance.y * weight),
+             hn::IfThenElseZero(lit, f32(albedo[2]) * s.radiance.z * weight)},
+            block.contribution, places[i]);
+    }
+    steps.begin();
+  };
   for_each_ray(
       block,
-      [&](const Vec3Lanes& normal)
-          HWY_ATTR { return octahedral_cell_lanes(times(m, normal), p.bins); },
-      [&](Uint bin, const Vec3Lanes& normal, const Vec3Lanes& geometric, Uint x, Uint y,
-          std::size_t to) HWY_ATTR {
-        const EnvironmentSampleLanes s = sample_product_lanes(e, p, bin, x, y);
-        const Float zero = f32(0.0f);
-        const Float cosine = dot(s.direction, normal);
-        const auto lit = hn::And(hn::And(hn::Gt(cosine, zero), hn::Gt(s.pdf, zero)),
-                                 hn::Gt(dot(s.direction, geometric), zero));
-        const Float weight = f32(kInvPi) * cosine / s.pdf;
-        store(s.direction, block.direction, to);
-        store({hn::IfThenElseZero(lit, f32(albedo[0]) * s.radiance.x * weight),
-               hn::IfThenElseZero(lit, f32(albedo[1]) * s.radiance.y * weight),
-               hn::IfThenElseZero(lit, f32(albedo[2]) * s.radiance.z * weight)},
-              block.contribution, to);
+      [&](std::size_t p) HWY_ATTR {
+        return octahedral_cell_lanes(times(m, load(block.normal, p)), context.product.bins);
+      },
+      [&](Uint bin, std::size_t p, Uint x, Uint y, std::size_t to) HWY_ATTR {
+        points[steps.size()] = p;
+        places[steps.size()] = to;
+        steps.push(bin, x, y);
+        if (steps.size() == ProductSteps::kMost) finish();
       });
+  finish();
 }
 
 }  // namespace

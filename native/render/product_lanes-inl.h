@@ -149,45 +149,83 @@ HWY_INLINE EnvironmentSampleLanes sample_patch_lanes(const EnvironmentView& e, U
   return sample;
 }
 
-/// sample_product; pdf = 0 where there is no light.
-HWY_INLINE EnvironmentSampleLanes sample_product_lanes(const EnvironmentView& e,
-                                                       const ProductView& p, Uint bin, Uint bits_x,
-                                                       Uint bits_y) {
-  const Double unit = f64(2.3283064365386963e-10);  // 2^-32
-  const Double u = (to_double(bits_x) + f64(0.5)) * unit;
-  const Double v = (to_double(bits_y) + f64(0.5)) * unit;
-  const Uint one = u32(1);
-  const Uint row_base = hn::Mul(bin, u32(p.rows + 1));
-  const Uint all = gather(p.row_cdf, hn::Add(row_base, u32(p.rows)));
+/// sample_product of some vectors of rays, step by step: a step of one vector waits for what it
+/// gathers, and those of the others fill that time. pdf = 0 where there is no light.
+class ProductSteps {
+ public:
+  static constexpr std::size_t kMost = 32;
 
-  const auto row = select_lanes(p.row_cdf, row_base, u32(p.rows), v);
-  const Uint column_base =
-      hn::Mul(hn::Add(hn::Mul(bin, u32(p.rows)), row.entry), u32(p.columns + 1));
-  const auto column = select_lanes(p.column_cdf, column_base, u32(p.columns), u);
+  HWY_INLINE ProductSteps(const EnvironmentView& e, const ProductView& p) : e_(e), p_(p) {}
 
-  const Uint first_row = gather(p.patch_row, row.entry);
-  const Uint end_row = gather(p.patch_row, hn::Add(row.entry, one));
-  const Uint in_cell =
-      hn::Add(hn::Mul(column.entry, u32(e.height + 1 + p.rows)), hn::Add(first_row, row.entry));
-  const auto patch_row =
-      select_lanes(p.patch_row_cdf, in_cell, hn::Sub(end_row, first_row), row.fraction);
-  const Uint at_row = hn::Add(first_row, patch_row.entry);
+  HWY_INLINE void begin() { count_ = 0; }
+  HWY_INLINE std::size_t size() const { return count_; }
 
-  const Uint first_column = gather(p.patch_column, column.entry);
-  const Uint end_column = gather(p.patch_column, hn::Add(column.entry, one));
-  const Uint in_row = hn::Add(hn::Mul(at_row, u32(e.width + 1)), first_column);
-  const auto patch_column =
-      select_lanes(e.column_cdf, in_row, hn::Sub(end_column, first_column), column.fraction);
+  HWY_INLINE void push(Uint bin, Uint bits_x, Uint bits_y) {
+    Draw& d = draws_[count_++];
+    d.bin = bin;
+    const Double unit = f64(2.3283064365386963e-10);  // 2^-32
+    d.across.fraction = (to_double(bits_x) + f64(0.5)) * unit;
+    d.up.fraction = (to_double(bits_y) + f64(0.5)) * unit;
+  }
 
-  const Double probability =
-      (row.probability * column.probability) * (patch_row.probability * patch_column.probability);
-  EnvironmentSampleLanes sample = sample_patch_lanes(
-      e, at_row, hn::Add(first_column, patch_column.entry), below_one_lanes(patch_column.fraction),
-      below_one_lanes(patch_row.fraction), probability);
-  const auto dark = hn::RebindMask(TagF(), hn::Eq(all, u32(0)));
-  sample.pdf = hn::IfThenZeroElse(dark, sample.pdf);
-  return sample;
-}
+  /// Chooses the patches of all.
+  HWY_INLINE void choose() {
+    const Uint one = u32(1);
+    for (std::size_t i = 0; i < count_; ++i) {
+      Draw& d = draws_[i];
+      d.up =
+          select_lanes(p_.row_cdf, hn::Mul(d.bin, u32(p_.rows + 1)), u32(p_.rows), d.up.fraction);
+    }
+    for (std::size_t i = 0; i < count_; ++i) {
+      Draw& d = draws_[i];
+      const Uint base =
+          hn::Mul(hn::Add(hn::Mul(d.bin, u32(p_.rows)), d.up.entry), u32(p_.columns + 1));
+      d.across = select_lanes(p_.column_cdf, base, u32(p_.columns), d.across.fraction);
+      d.probability = d.up.probability * d.across.probability;
+    }
+    for (std::size_t i = 0; i < count_; ++i) {
+      Draw& d = draws_[i];
+      const Uint first = gather(p_.patch_row, d.up.entry);
+      const Uint end = gather(p_.patch_row, hn::Add(d.up.entry, one));
+      const Uint in_cell = hn::Add(hn::Mul(d.across.entry, u32(e_.height + 1 + p_.rows)),
+                                   hn::Add(first, d.up.entry));
+      d.up = select_lanes(p_.patch_row_cdf, in_cell, hn::Sub(end, first), d.up.fraction);
+      d.up.entry = hn::Add(first, d.up.entry);
+    }
+    for (std::size_t i = 0; i < count_; ++i) {
+      Draw& d = draws_[i];
+      const Uint first = gather(p_.patch_column, d.across.entry);
+      const Uint end = gather(p_.patch_column, hn::Add(d.across.entry, one));
+      const Uint in_row = hn::Add(hn::Mul(d.up.entry, u32(e_.width + 1)), first);
+      d.across = select_lanes(e_.column_cdf, in_row, hn::Sub(end, first), d.across.fraction);
+      d.across.entry = hn::Add(first, d.across.entry);
+      d.probability = d.probability * (d.up.probability * d.across.probability);
+    }
+  }
+
+  HWY_INLINE EnvironmentSampleLanes sample(std::size_t i) const {
+    const Draw& d = draws_[i];
+    EnvironmentSampleLanes sample =
+        sample_patch_lanes(e_, d.up.entry, d.across.entry, below_one_lanes(d.across.fraction),
+                           below_one_lanes(d.up.fraction), d.probability);
+    const Uint all = gather(p_.row_cdf, hn::Add(hn::Mul(d.bin, u32(p_.rows + 1)), u32(p_.rows)));
+    const auto dark = hn::RebindMask(TagF(), hn::Eq(all, u32(0)));
+    sample.pdf = hn::IfThenZeroElse(dark, sample.pdf);
+    return sample;
+  }
+
+ private:
+  struct Draw {
+    Uint bin;
+    SelectionLanes up, across;  // the fractions are the positions still to be spent
+    Double probability;
+  };
+
+  const EnvironmentView& e_;
+  const ProductView& p_;
+  std::size_t count_ = 0;
+  Draw draws_[kMost];
+};
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
