@@ -6,6 +6,7 @@
 #include "core/aabb.h"
 #include "parallel/thread_pool.h"
 #include "render/quantized_cdf.h"
+#include "render/sky_visibility.h"
 
 namespace komorebi {
 namespace {
@@ -19,6 +20,9 @@ constexpr double kMeanShare = 0.25;
 /// No cell weighs less than this share of what the largest cosine in it would give: no normal in
 /// the bin meets light that is hardly ever sampled. It also bounds a sample by the film's limit.
 constexpr float kLeastShare = 0.5f;
+
+/// Hidden parts of the sky keep this weight: what was measured holds for most points, not for all.
+constexpr float kLeastSeen = 0.125f;
 
 /// The angle between two directions of any length.
 double angle(const Vec3d& a, const Vec3d& b) {
@@ -54,16 +58,14 @@ Vec3d edge_point(const EnvironmentView& map, std::uint32_t column, double z) {
   return Vec3d(r * cos_phi, r * sin_phi, z);
 }
 
-}  // namespace
+/// A direction of the bin, (0, 0) and (1, 1) being opposite corners of it; of unit length.
+Vec3d in_bin(std::uint32_t bin, std::uint32_t bins, double x, double y) {
+  const double column = bin % bins + x, row = bin / bins + y;
+  const Vec2 at(Vec3d(2.0 * column / bins - 1.0, 2.0 * row / bins - 1.0, 0));
+  return glm::normalize(Vec3d(direction_from_octahedral(at)));
+}
 
-/// What the product needs to know of each cell, [rows][columns].
-struct ProductTable::Cells {
-  std::vector<double> energy;  ///< luminance times solid angle, to a common factor
-  std::vector<double> solid_angle;
-  std::vector<Vec3> centre;     ///< where its light comes from in the mean; unit length
-  std::vector<float> radius;    ///< bound of the angle from the centre to any point of the cell
-  std::vector<float> variance;  ///< of the light's angle from the centre, on one axis
-};
+}  // namespace
 
 ProductTable::ProductTable(const EnvironmentView& map)
     : bins_(kBins),
@@ -71,18 +73,46 @@ ProductTable::ProductTable(const EnvironmentView& map)
       columns_(std::min(kColumns, map.width)) {
   patch_row_ = even_cuts(map.height + 1, rows_);
   patch_column_ = even_cuts(map.width, columns_);
-  const Cells cells = sum_cells(map);
+  sum_cells(map);
+  ThreadPool pool(0);  // once a map
+  fill(nullptr, pool);
+}
+
+ProductTable::ProductTable(const ProductTable& map, const SkyVisibility& visibility,
+                           ThreadPool& pool)
+    : bins_(map.bins_),
+      rows_(map.rows_),
+      columns_(map.columns_),
+      cells_(map.cells_),
+      patch_row_(map.patch_row_),
+      patch_column_(map.patch_column_),
+      patch_row_cdf_(map.patch_row_cdf_) {
+  fill(&visibility, pool);
+}
+
+void ProductTable::fill(const SkyVisibility* visibility, ThreadPool& pool) {
   row_cdf_.resize(std::size_t{bins_} * bins_ * (rows_ + 1));
   column_cdf_.resize(std::size_t{bins_} * bins_ * rows_ * (columns_ + 1));
-  ThreadPool pool(0);  // once a map
+  const std::size_t cells = cells_.energy.size();
+  std::vector<float> seen(SkyVisibility::kSides * cells, 1.0f);
+  if (visibility != nullptr) {
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const auto side = static_cast<std::uint32_t>(i / cells);
+      const float share = visibility->share(side, cells_.centre[i % cells]);
+      seen[i] = max_of(std::sqrt(share), kLeastSeen);
+    }
+  }
   pool.for_each_chunk(std::size_t{bins_} * bins_, 32, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t bin = begin; bin < end; ++bin)
-      fill_bin(static_cast<std::uint32_t>(bin), cells);
+    for (std::size_t bin = begin; bin < end; ++bin) {
+      const std::uint32_t side =
+          SkyVisibility::side(Vec3(in_bin(static_cast<std::uint32_t>(bin), bins_, 0.5, 0.5)));
+      fill_bin(static_cast<std::uint32_t>(bin), {&seen[side * cells], cells});
+    }
   });
 }
 
-ProductTable::Cells ProductTable::sum_cells(const EnvironmentView& map) {
-  Cells cells;
+void ProductTable::sum_cells(const EnvironmentView& map) {
+  Cells& cells = cells_;
   const std::size_t strip = map.height + 1 + rows_;
   patch_row_cdf_.resize(columns_ * strip);
   std::vector<double> row_energy;
@@ -143,21 +173,14 @@ ProductTable::Cells ProductTable::sum_cells(const EnvironmentView& map) {
       cells.energy[i] += kMeanShare * (energy / solid_angle) * cells.solid_angle[i];
     }
   }
-  return cells;
 }
 
-void ProductTable::fill_bin(std::uint32_t bin, const Cells& cells) {
-  const std::uint32_t bin_column = bin % bins_, bin_row = bin / bins_;
-  const auto corner = [&](double x, double y) {
-    const double column = bin_column + x, row = bin_row + y;
-    return Vec3d(direction_from_octahedral(
-        Vec2(Vec3d(2.0 * column / bins_ - 1.0, 2.0 * row / bins_ - 1.0, 0))));
-  };
-  const Vec3d middle = glm::normalize(corner(0.5, 0.5));
+void ProductTable::fill_bin(std::uint32_t bin, std::span<const float> seen) {
+  const Vec3d middle = in_bin(bin, bins_, 0.5, 0.5);
   double bin_radius = 0.0;
   for (const double x : {0.0, 1.0}) {
     for (const double y : {0.0, 1.0})
-      bin_radius = std::max(bin_radius, angle(middle, corner(x, y)));
+      bin_radius = std::max(bin_radius, angle(middle, in_bin(bin, bins_, x, y)));
   }
   const Vec3 normal(middle);
   const auto reach = static_cast<float>(bin_radius);
@@ -166,16 +189,16 @@ void ProductTable::fill_bin(std::uint32_t bin, const Cells& cells) {
   std::vector<double> product(columns_), row_weight(rows_);
   for (std::uint32_t r = 0; r < rows_; ++r) {
     const std::size_t first = std::size_t{r} * columns_;
-    const Vec3* const centre = &cells.centre[first];
-    const float* const radius = &cells.radius[first];
-    const float* const variance = &cells.variance[first];
+    const Vec3* const centre = &cells_.centre[first];
+    const float* const radius = &cells_.radius[first];
+    const float* const variance = &cells_.variance[first];
     for (std::uint32_t c = 0; c < columns_; ++c) {
       const float cosine =
           (normal.x * centre[c].x + normal.y * centre[c].y) + normal.z * centre[c].z;
       weight[c] = cosine_weight(cosine, reach + radius[c], bin_variance + variance[c]);
     }
     for (std::uint32_t c = 0; c < columns_; ++c) {
-      product[c] = cells.energy[first + c] * static_cast<double>(weight[c]);
+      product[c] = cells_.energy[first + c] * static_cast<double>(weight[c] * seen[first + c]);
     }
     row_weight[r] =
         quantize_cdf(product, &column_cdf_[(std::size_t{bin} * rows_ + r) * (columns_ + 1)]);

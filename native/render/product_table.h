@@ -1,10 +1,14 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/environment_product.h"
+#include "parallel/thread_pool.h"
 
 namespace komorebi {
+
+class SkyVisibility;
 
 /// The tables of product importance sampling for one map; immutable. They belong to the texels and
 /// to normals in the map's own space, so neither strength nor rotation touches them.
@@ -13,16 +17,29 @@ class ProductTable {
   /// `map` must shine somewhere. Of a large map: 32² bins of normals, 32 × 64 cells.
   explicit ProductTable(const EnvironmentView& map);
 
+  /// The same of the same map, for what `visibility` says is seen of it: cells are weighted by the
+  /// root of the share of their rays that arrive (the root mean square of 0 and 1), never by less
+  /// than an eighth.
+  ProductTable(const ProductTable& map, const SkyVisibility& visibility, ThreadPool& pool);
+
   ProductView view() const;
   std::size_t byte_count() const;
 
  private:
-  struct Cells;
-  void cut(const EnvironmentView& map);
-  Cells sum_cells(const EnvironmentView& map);
-  void fill_bin(std::uint32_t bin, const Cells& cells);
+  /// What the product needs to know of each cell, [rows][columns].
+  struct Cells {
+    std::vector<double> energy;  ///< luminance times solid angle, to a common factor
+    std::vector<double> solid_angle;
+    std::vector<Vec3> centre;     ///< where its light comes from in the mean; unit length
+    std::vector<float> radius;    ///< bound of the angle from the centre to any point of the cell
+    std::vector<float> variance;  ///< of the light's angle from the centre, on one axis
+  };
+  void sum_cells(const EnvironmentView& map);
+  void fill(const SkyVisibility* visibility, ThreadPool& pool);
+  void fill_bin(std::uint32_t bin, std::span<const float> seen);
 
   std::uint32_t bins_, rows_, columns_;
+  Cells cells_;
   std::vector<std::uint32_t> patch_row_, patch_column_;
   std::vector<std::uint32_t> row_cdf_, column_cdf_, patch_row_cdf_;
 };

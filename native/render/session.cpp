@@ -4,6 +4,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "render/sky_visibility.h"
 #include "render/tiles.h"
 
 namespace komorebi {
@@ -79,9 +80,20 @@ void Session::resume() {
   launch();
 }
 
+/// Map directions are chosen by what the camera's surfaces see of the map.
+void Session::prepare() {
+  if (context_.product.bins == 0 || guided_) return;
+  SkyVisibility visibility;
+  if (!measure_sky_visibility(context_, pool_, *cancel_, visibility)) return;
+  guided_ = std::make_unique<ProductTable>(scene_->world_environment()->product_table(), visibility,
+                                           pool_);
+  context_.product = guided_->view();
+}
+
 void Session::run() {
   std::string error;
   try {
+    prepare();
     pool_.run(pool_.size(), [this](unsigned) { work(); });
   } catch (const std::bad_alloc&) {
     error = "out of memory while rendering";

@@ -15,6 +15,7 @@
 #include "render/context.h"
 #include "render/film.h"
 #include "render/filter.h"
+#include "render/product_table.h"
 #include "render/scene.h"
 #include "render/schedule.h"
 
@@ -68,6 +69,7 @@ class Session {
 
  private:
   void launch();
+  void prepare();
   void run();
   void work();
 
@@ -75,6 +77,7 @@ class Session {
   Settings settings_;
   FilterTable filter_;
   RenderContext context_;
+  std::unique_ptr<const ProductTable> guided_;  // context_.product, once it is made
   AdaptiveRule rule_;
   ThreadPool pool_;
   Film film_;

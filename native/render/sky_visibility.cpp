@@ -1,0 +1,109 @@
+#include "render/sky_visibility.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bvh/traverse.h"
+#include "core/octahedral.h"
+#include "core/warp.h"
+#include "render/bundle_batch.h"
+#include "render/one_ray.h"
+#include "render/ray_batch.h"
+
+namespace komorebi {
+namespace {
+
+constexpr double kPoints = 2304.0;
+constexpr std::uint32_t kRaysPerPoint = 64;
+
+/// What is known of all sides counts as much as so many rays of one side.
+constexpr float kPriorRays = 4.0f;
+
+}  // namespace
+
+SkyVisibility::SkyVisibility()
+    : counts_(std::make_unique<Count[]>(std::size_t{kSides} * kGrid * kGrid)) {}
+
+std::uint32_t SkyVisibility::side(const Vec3& n) {
+  const Vec3 a(n.x < 0.0f ? -n.x : n.x, n.y < 0.0f ? -n.y : n.y, n.z < 0.0f ? -n.z : n.z);
+  const int axis = a.z < a.x || a.z < a.y ? (a.y < a.x ? 0 : 1) : 2;
+  return 2u * static_cast<std::uint32_t>(axis) + (n[axis] < 0.0f ? 1u : 0u);
+}
+
+void SkyVisibility::count(const Vec3& normal, const Vec3& direction, bool seen) {
+  Count& c = counts_[side(normal) * kGrid * kGrid + octahedral_cell(direction, kGrid)];
+  c.cast.fetch_add(1, std::memory_order_relaxed);
+  if (seen) c.seen.fetch_add(1, std::memory_order_relaxed);
+}
+
+float SkyVisibility::share(std::uint32_t side, const Vec3& direction) const {
+  const std::uint32_t cell = octahedral_cell(direction, kGrid);
+  std::uint32_t cast = 0, seen = 0;
+  for (std::uint32_t s = 0; s < kSides; ++s) {
+    cast += counts_[s * kGrid * kGrid + cell].cast;
+    seen += counts_[s * kGrid * kGrid + cell].seen;
+  }
+  const float all = (static_cast<float>(seen) + 1.0f) / (static_cast<float>(cast) + 2.0f);
+  const Count& own = counts_[side * kGrid * kGrid + cell];
+  return (static_cast<float>(own.seen) + kPriorRays * all) /
+         (static_cast<float>(own.cast) + kPriorRays);
+}
+
+bool measure_sky_visibility(const RenderContext& given, ThreadPool& pool, const Cancel& cancel,
+                            SkyVisibility& visibility) {
+  RenderContext context = given;
+  context.seed = 0;  // the same for all seeds
+  const double width = 2.0 * context.camera.film_center_x;
+  const double height = 2.0 * context.camera.film_center_y;
+  const double spacing = std::max(1.0, std::sqrt(width * height / kPoints));
+  const auto columns = static_cast<std::uint32_t>(std::max(1.0, width / spacing));
+  const auto rows = static_cast<std::uint32_t>(std::max(1.0, height / spacing));
+  const Mat3& into_map = context.environment.texture_from_world;
+  pool.for_each_chunk(rows, 1, [&](std::size_t begin, std::size_t end) {
+    RayBatch camera_rays;
+    BundleBatch batch;
+    std::vector<Hit> hits;
+    std::vector<std::uint32_t> bits;
+    std::vector<Vec3> normals;
+    for (std::size_t row = begin; row < end && !cancel.raised(); ++row) {
+      const auto y = static_cast<std::uint32_t>((static_cast<double>(row) + 0.5) / rows * height);
+      const auto x_of = [&](std::uint32_t column) {
+        return static_cast<std::uint32_t>((column + 0.5) / columns * width);
+      };
+      camera_rays.clear();
+      for (std::uint32_t column = 0; column < columns; ++column) {
+        camera_rays.push(start_ray(context, x_of(column), y, 0));
+      }
+      hits.resize(columns);
+      intersect(context.scene, camera_rays.span(), hits.data());
+      batch.clear();
+      normals.clear();
+      for (std::uint32_t column = 0; column < columns; ++column) {
+        const Hit& hit = hits[column];
+        if (!hit.valid()) continue;
+        const Ray ray = camera_rays.span()[column];
+        const SurfacePoint point = surface_point(context.scene, hit, ray);
+        batch.begin_point(leaving_origin(point), ray.time, hit);
+        normals.push_back(into_map * point.normal);
+        const Frame frame = make_frame(point.normal);
+        const Sampler sampler(context.seed, x_of(column), y);
+        for (std::uint32_t i = 0; i < kRaysPerPoint; ++i) {
+          const Vec2 u = sampler.sample_2d(vertex_dimension(0, kVertexLightDirection), i);
+          batch.push_ray(frame.to_world(cosine_hemisphere_disk(u)), context.light_distance);
+        }
+      }
+      const RayBundles bundles = batch.bundles(kMaskShadow);
+      bits.resize((bundles.ray_count() + 31) / 32);
+      occluded(context.scene, bundles, bits.data());
+      for (std::uint32_t i = 0; i < bundles.ray_count(); ++i) {
+        const Vec3 direction(bundles.direction_x[i], bundles.direction_y[i],
+                             bundles.direction_z[i]);
+        visibility.count(normals[i / kRaysPerPoint], into_map * direction,
+                         !((bits[i / 32] >> (i % 32)) & 1u));
+      }
+    }
+  });
+  return !cancel.raised();
+}
+
+}  // namespace komorebi
