@@ -28,6 +28,7 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.scene = scene.view();
   context.camera = scene.camera();
   context.environment = scene.environment();
+  context.sky = ao ? constant_environment(Vec3(1.0f)) : context.environment;
   context.filter = filter;
   context.method = settings.method;
   context.ao_sampling = settings.ao_sampling;

@@ -13,8 +13,9 @@ namespace komorebi {
 struct RenderContext {
   SceneView scene;
   CameraView camera;
-  EnvironmentView environment;
-  ProductView product;  ///< bins = 0: light rays are drawn by cosine_share
+  EnvironmentView environment;  ///< what is seen behind the scene
+  EnvironmentView sky;          ///< what lights it: the same, or white for ambient occlusion
+  ProductView product;          ///< bins = 0: light rays are drawn by cosine_share
   FilterView filter;
   Method method = Method::kAmbientOcclusion;
   AoSampling ao_sampling = AoSampling::kCosine;

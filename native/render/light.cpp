@@ -45,10 +45,10 @@ LightSample sample_sky(const RenderContext& context, const SurfacePoint& point, 
     bits.x = stretched(bits.x, 0, split);
     const Vec2 u(to_unit_float(bits.x), to_unit_float(bits.y));
     sample.direction = make_frame(point.normal).to_world(cosine_hemisphere_disk(u));
-    sky = evaluate_environment(context.environment, sample.direction);
+    sky = evaluate_environment(context.sky, sample.direction);
   } else {
     bits.x = stretched(bits.x, split, kAll - split);
-    const EnvironmentSample drawn = sample_environment(context.environment, bits);
+    const EnvironmentSample drawn = sample_environment(context.sky, bits);
     sample.direction = drawn.direction;
     sky = {drawn.radiance, drawn.pdf};
   }
@@ -60,8 +60,7 @@ LightSample sample_sky(const RenderContext& context, const SurfacePoint& point, 
 
 LightSample sample_sky_product(const RenderContext& context, const SurfacePoint& point,
                                const Bits2& bits) {
-  const EnvironmentSample drawn =
-      sample_product(context.environment, context.product, point.normal, bits);
+  const EnvironmentSample drawn = sample_product(context.sky, context.product, point.normal, bits);
   LightSample sample;
   sample.direction = drawn.direction;
   const float cosine = glm::dot(drawn.direction, point.normal);

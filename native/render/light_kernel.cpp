@@ -18,7 +18,7 @@ const LightKernel* active_light_kernel() {
 
 /// Gathers read by signed 32-bit indices.
 bool in_reach(const RenderContext& context) {
-  const EnvironmentView& e = context.environment;
+  const EnvironmentView& e = context.sky;
   return 3 * std::uint64_t{e.width} * e.height < (1u << 31);
 }
 

@@ -52,9 +52,9 @@ void ambient(const RenderContext&, const LightBlock& block) {
 }
 
 void product(const RenderContext& context, const LightBlock& block) {
-  const float* const m = entries(context.environment.texture_from_world);
+  const float* const m = entries(context.sky.texture_from_world);
   const float albedo[3] = {context.albedo.x, context.albedo.y, context.albedo.z};
-  ProductSteps steps(context.environment, context.product);
+  ProductSteps steps(context.sky, context.product);
   std::size_t points[ProductSteps::kMost], places[ProductSteps::kMost];
   const auto finish = [&]() HWY_ATTR {
     steps.choose();

@@ -22,7 +22,7 @@ constexpr double kMeanShare = 0.25;
 constexpr float kLeastShare = 0.5f;
 
 /// Hidden parts of the sky keep this weight: what was measured holds for most points, not for all.
-constexpr float kLeastSeen = 0.125f;
+constexpr float kLeastSeen = 0.04f;
 
 /// The angle between two directions of any length.
 double angle(const Vec3d& a, const Vec3d& b) {

@@ -18,8 +18,7 @@ class ProductTable {
   explicit ProductTable(const EnvironmentView& map);
 
   /// The same of the same map, for what `visibility` says is seen of it: cells are weighted by the
-  /// root of the share of their rays that arrive (the root mean square of 0 and 1), never by less
-  /// than an eighth.
+  /// root of the share of their rays that arrive: the root mean square of 0 and 1.
   ProductTable(const ProductTable& map, const SkyVisibility& visibility, ThreadPool& pool);
 
   ProductView view() const;

@@ -4,7 +4,6 @@
 #include <new>
 #include <stdexcept>
 
-#include "render/sky_visibility.h"
 #include "render/tiles.h"
 
 namespace komorebi {
@@ -80,20 +79,10 @@ void Session::resume() {
   launch();
 }
 
-/// Map directions are chosen by what the camera's surfaces see of the map.
-void Session::prepare() {
-  if (context_.product.bins == 0 || guided_) return;
-  SkyVisibility visibility;
-  if (!measure_sky_visibility(context_, pool_, *cancel_, visibility)) return;
-  guided_ = std::make_unique<ProductTable>(scene_->world_environment()->product_table(), visibility,
-                                           pool_);
-  context_.product = guided_->view();
-}
-
 void Session::run() {
   std::string error;
   try {
-    prepare();
+    guide_.prepare(*scene_, pool_, *cancel_, context_);
     pool_.run(pool_.size(), [this](unsigned) { work(); });
   } catch (const std::bad_alloc&) {
     error = "out of memory while rendering";

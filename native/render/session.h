@@ -15,9 +15,9 @@
 #include "render/context.h"
 #include "render/film.h"
 #include "render/filter.h"
-#include "render/product_table.h"
 #include "render/scene.h"
 #include "render/schedule.h"
+#include "render/sky_guide.h"
 
 namespace komorebi {
 
@@ -69,7 +69,6 @@ class Session {
 
  private:
   void launch();
-  void prepare();
   void run();
   void work();
 
@@ -77,7 +76,7 @@ class Session {
   Settings settings_;
   FilterTable filter_;
   RenderContext context_;
-  std::unique_ptr<const ProductTable> guided_;  // context_.product, once it is made
+  SkyGuide guide_;  // what context_ draws light rays by
   AdaptiveRule rule_;
   ThreadPool pool_;
   Film film_;

@@ -13,11 +13,11 @@
 namespace komorebi {
 namespace {
 
-constexpr double kPoints = 2304.0;
-constexpr std::uint32_t kRaysPerPoint = 64;
+constexpr double kPoints = 9216.0;  // or every pixel of a small frame
+constexpr std::uint32_t kRays = 16 * 9216, kLeastRaysPerPoint = 16, kMostRaysPerPoint = 64;
 
 /// What is known of all sides counts as much as so many rays of one side.
-constexpr float kPriorRays = 4.0f;
+constexpr float kPriorRays = 8.0f;
 
 }  // namespace
 
@@ -36,8 +36,7 @@ void SkyVisibility::count(const Vec3& normal, const Vec3& direction, bool seen) 
   if (seen) c.seen.fetch_add(1, std::memory_order_relaxed);
 }
 
-float SkyVisibility::share(std::uint32_t side, const Vec3& direction) const {
-  const std::uint32_t cell = octahedral_cell(direction, kGrid);
+float SkyVisibility::share_of_cell(std::uint32_t side, std::uint32_t cell) const {
   std::uint32_t cast = 0, seen = 0;
   for (std::uint32_t s = 0; s < kSides; ++s) {
     cast += counts_[s * kGrid * kGrid + cell].cast;
@@ -49,6 +48,28 @@ float SkyVisibility::share(std::uint32_t side, const Vec3& direction) const {
          (static_cast<float>(own.cast) + kPriorRays);
 }
 
+float SkyVisibility::share(std::uint32_t side, const Vec3& direction) const {
+  return share_of_cell(side, octahedral_cell(direction, kGrid));
+}
+
+float SkyVisibility::variance_left() const {
+  double guided = 0.0, even = 0.0;
+  for (std::uint32_t side = 0; side < kSides; ++side) {
+    double rays = 0.0, share = 0.0, root = 0.0;
+    for (std::uint32_t cell = 0; cell < kGrid * kGrid; ++cell) {
+      const double cast = counts_[side * kGrid * kGrid + cell].cast;
+      const double seen = static_cast<double>(share_of_cell(side, cell));
+      rays += cast;
+      share += cast * seen;
+      root += cast * std::sqrt(seen);
+    }
+    if (rays == 0.0) continue;
+    guided += (root * root - share * share) / rays;
+    even += share - share * share / rays;
+  }
+  return even > 0.0 ? static_cast<float>(guided / even) : 1.0f;
+}
+
 bool measure_sky_visibility(const RenderContext& given, ThreadPool& pool, const Cancel& cancel,
                             SkyVisibility& visibility) {
   RenderContext context = given;
@@ -58,7 +79,9 @@ bool measure_sky_visibility(const RenderContext& given, ThreadPool& pool, const 
   const double spacing = std::max(1.0, std::sqrt(width * height / kPoints));
   const auto columns = static_cast<std::uint32_t>(std::max(1.0, width / spacing));
   const auto rows = static_cast<std::uint32_t>(std::max(1.0, height / spacing));
-  const Mat3& into_map = context.environment.texture_from_world;
+  const std::uint32_t per_point =
+      std::clamp(kRays / (columns * rows), kLeastRaysPerPoint, kMostRaysPerPoint);
+  const Mat3& into_map = context.sky.texture_from_world;
   pool.for_each_chunk(rows, 1, [&](std::size_t begin, std::size_t end) {
     RayBatch camera_rays;
     BundleBatch batch;
@@ -87,7 +110,7 @@ bool measure_sky_visibility(const RenderContext& given, ThreadPool& pool, const 
         normals.push_back(into_map * point.normal);
         const Frame frame = make_frame(point.normal);
         const Sampler sampler(context.seed, x_of(column), y);
-        for (std::uint32_t i = 0; i < kRaysPerPoint; ++i) {
+        for (std::uint32_t i = 0; i < per_point; ++i) {
           const Vec2 u = sampler.sample_2d(vertex_dimension(0, kVertexLightDirection), i);
           batch.push_ray(frame.to_world(cosine_hemisphere_disk(u)), context.light_distance);
         }
@@ -98,7 +121,7 @@ bool measure_sky_visibility(const RenderContext& given, ThreadPool& pool, const 
       for (std::uint32_t i = 0; i < bundles.ray_count(); ++i) {
         const Vec3 direction(bundles.direction_x[i], bundles.direction_y[i],
                              bundles.direction_z[i]);
-        visibility.count(normals[i / kRaysPerPoint], into_map * direction,
+        visibility.count(normals[i / per_point], into_map * direction,
                          !((bits[i / 32] >> (i % 32)) & 1u));
       }
     }

@@ -32,14 +32,20 @@ class SkyVisibility {
   /// (0, 1): measured, and where little is known, as for all sides together.
   float share(std::uint32_t side, const Vec3& direction) const;
 
+  /// The variance of ambient occlusion from directions of density cosine · √share over that from
+  /// the cosine alone, for independent samples: 1 where nothing is known of a direction.
+  float variance_left() const;
+
  private:
+  float share_of_cell(std::uint32_t side, std::uint32_t cell) const;
+
   struct Count {
     std::atomic<std::uint32_t> cast{0}, seen{0};
   };
   std::unique_ptr<Count[]> counts_;  // [kSides][kGrid²]
 };
 
-/// Casts rays from some 2,000 points that the camera sees, evenly over the full frame. False when
+/// Casts rays from some 9,000 points that the camera sees, evenly over the full frame. False when
 /// cancelled.
 bool measure_sky_visibility(const RenderContext& context, ThreadPool& pool, const Cancel& cancel,
                             SkyVisibility& visibility);

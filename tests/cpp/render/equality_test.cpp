@@ -7,6 +7,7 @@
 
 #include "bvh/traverse.h"
 #include "render/one_ray.h"
+#include "render/sky_guide.h"
 #include "support/scenes.h"
 
 namespace komorebi::testing {
@@ -63,7 +64,9 @@ TEST_P(Equality, BatchesAgreeWithOneRayAfterAnother) {
   settings_.has_region = true;
   settings_.region = {30, 20, 110, 70};
   const FilterTable filter(settings_.pixel_filter, settings_.filter_width);
-  const RenderContext context = make_context(*scene, settings_, filter.view());
+  RenderContext context = make_context(*scene, settings_, filter.view());
+  SkyGuide guide;
+  guide.prepare(*scene, shared_pool(), Cancel(), context);
   Film film(settings_.region, settings_, scene->max_radiance());
   for (const Rect& cell : cells_of(settings_.region)) {
     TileSums sums;

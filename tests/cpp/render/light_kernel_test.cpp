@@ -90,12 +90,12 @@ TEST(LightKernel, ProductOfMapAndCosine) {
     const Environment map = testing::random_map(static_cast<std::uint32_t>(width),
                                                 static_cast<std::uint32_t>(height), 3);
     if (map.black()) continue;
-    context.environment = map.view(1.7, turn);
+    context.sky = map.view(1.7, turn);
     context.product = map.product_table().view();
     expect_equal_to_scalar(context, 3, 2000);
   }
   const Environment sunny = testing::sunny_map(1024, 512, 77, 400, 1e6f);
-  context.environment = sunny.view(1.0, Mat3d(1.0));
+  context.sky = sunny.view(1.0, Mat3d(1.0));
   context.product = sunny.product_table().view();
   expect_equal_to_scalar(context, 16, 4000);
 }
@@ -104,7 +104,7 @@ TEST(LightKernel, OtherStrategies) {
   const Environment map = testing::random_map(30, 20, 5);
   RenderContext context;
   context.method = Method::kWorldLight;
-  context.environment = map.view();
+  context.sky = map.view();
   context.cosine_share = 0.5f;
   expect_equal_to_scalar(context, 2, 200);
 }

@@ -1,0 +1,41 @@
+#include "render/sky_guide.h"
+
+#include "render/sky_visibility.h"
+
+namespace komorebi {
+namespace {
+
+/// Ambient occlusion from the cosine alone has no noise where nothing is hidden, and costs least a
+/// ray: it is left only where so little of its variance would remain (docs/performance.md).
+constexpr float kWorthwhile = 0.45f;
+
+/// A white map whose patches are the table's cells.
+std::unique_ptr<const Environment> white_sky() {
+  constexpr std::uint32_t kWidth = 64, kHeight = 31;
+  return std::make_unique<Environment>("white", kWidth, kHeight,
+                                       std::vector<float>(3 * kWidth * kHeight, 1.0f));
+}
+
+}  // namespace
+
+void SkyGuide::prepare(const Scene& scene, ThreadPool& pool, const Cancel& cancel,
+                       RenderContext& context) {
+  const bool ambient = context.method == Method::kAmbientOcclusion;
+  if (done_ ||
+      (context.product.bins == 0 && !(ambient && context.ao_sampling == AoSampling::kCosine))) {
+    return;
+  }
+  SkyVisibility visibility;
+  if (!measure_sky_visibility(context, pool, cancel, visibility)) return;
+  done_ = true;
+  if (ambient) {
+    if (visibility.variance_left() > kWorthwhile) return;
+    white_ = white_sky();
+    context.sky = white_->view();
+  }
+  const Environment& map = ambient ? *white_ : *scene.world_environment();
+  table_ = std::make_unique<ProductTable>(map.product_table(), visibility, pool);
+  context.product = table_->view();
+}
+
+}  // namespace komorebi
