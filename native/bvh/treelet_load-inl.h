@@ -122,12 +122,17 @@ HWY_INLINE std::uint64_t vertex_bit(std::uint32_t vertex) {
 void load(const Items& items, const std::uint32_t* indices, std::uint32_t count, Treelet& t) {
   const VertexReader vertex(items);
   const bool triangles = items.are_triangles();
-  constexpr std::uint32_t kAhead = 16;
+  // Triangles lie anywhere in the mesh's arrays: indices are asked for first, then vertices.
+  constexpr std::uint32_t kAhead = 16, kVerticesAhead = 8;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t at = t.count++;
     const std::uint32_t item = indices[i];
     if (triangles && i + kAhead < count) {
       hwy::Prefetch(&items.tri2vtx[3 * std::size_t{indices[i + kAhead]}]);
+    }
+    if (triangles && i + kVerticesAhead < count) {
+      const std::uint32_t* later = &items.tri2vtx[3 * std::size_t{indices[i + kVerticesAhead]}];
+      for (int k = 0; k < 3; ++k) hwy::Prefetch(&items.vtx2xyz[3 * std::size_t{later[k]}]);
     }
     t.item[at] = item;
     t.ids[at] = at;

@@ -12,6 +12,8 @@ constexpr unsigned kMostDigitBits = 11;
 constexpr std::size_t kMinimumShare = 8192;  ///< items below which a worker does not pay
 constexpr std::size_t kPollEvery = 65536;    ///< items between two looks at the cancel flag
 
+constexpr std::size_t kFewItems = 32768;  ///< for which buckets do not pay
+
 using Histogram = std::array<std::uint32_t, std::size_t{1} << kMostDigitBits>;
 
 /// Calls body(begin, end) for pieces of [begin, end), polling between them.
@@ -22,59 +24,140 @@ void poll_through(std::size_t begin, std::size_t end, const Cancel& cancel, Body
   }
 }
 
-template <class Key>
-void sort(std::span<KeyIndex<Key>> items, std::span<KeyIndex<Key>> scratch, ThreadPool& pool,
-          const Cancel& cancel, unsigned bits) {
-  const std::size_t count = items.size();
-  if (scratch.size() < count) throw std::invalid_argument("radix_sort: scratch is too small");
-  const auto workers =
-      static_cast<unsigned>(std::clamp<std::size_t>(count / kMinimumShare, 1, pool.size()));
-  const auto share = [&](unsigned worker) { return count * worker / workers; };
+/// Where things go that are sorted by one digit, at first how many there are.
+using Places = std::vector<Histogram>;  // one a worker
 
-  std::vector<Histogram> places(workers);
-  std::span<KeyIndex<Key>> from = items, to = scratch;
+/// One stable pass by the digit of `bits` bits at `shift`, by all workers. Returns the largest
+/// number of items with the same digit; if that is more than `most`, nothing is moved.
+template <class Key>
+std::size_t part(std::span<const KeyIndex<Key>> from, KeyIndex<Key>* to, unsigned shift,
+                 unsigned bits, std::size_t most, Places& places, ThreadPool& pool,
+                 const Cancel& cancel) {
+  const auto workers = static_cast<unsigned>(places.size());
+  const auto share = [&](unsigned worker) { return from.size() * worker / workers; };
+  const std::size_t digits = std::size_t{1} << bits;
+  const auto digit = [&](Key key) { return static_cast<std::size_t>(key >> shift) & (digits - 1); };
+  pool.run(workers, [&](unsigned worker) {
+    Histogram& histogram = places[worker];
+    std::fill_n(histogram.begin(), digits, 0u);
+    poll_through(share(worker), share(worker + 1), cancel, [&](std::size_t i, std::size_t end) {
+      for (; i < end; ++i) ++histogram[digit(from[i].key)];
+    });
+  });
+  if (cancel.raised()) throw Cancelled();
+
+  // Digit by digit, and within a digit worker by worker: that is what keeps the order.
+  std::uint32_t place = 0;
+  std::size_t largest = 0;
+  for (std::size_t d = 0; d < digits; ++d) {
+    const std::uint32_t before = place;
+    for (Histogram& histogram : places) {
+      const std::uint32_t size = histogram[d];
+      histogram[d] = place;
+      place += size;
+    }
+    largest = std::max<std::size_t>(largest, place - before);
+  }
+  if (largest > most) return largest;
+
+  pool.run(workers, [&](unsigned worker) {
+    Histogram& next = places[worker];
+    poll_through(share(worker), share(worker + 1), cancel, [&](std::size_t i, std::size_t end) {
+      for (; i < end; ++i) to[next[digit(from[i].key)]++] = from[i];
+    });
+  });
+  if (cancel.raised()) throw Cancelled();
+  return largest;
+}
+
+/// Least significant digit first, pass by pass over everything.
+template <class Key>
+void sort_by_passes(std::span<KeyIndex<Key>> items, std::span<KeyIndex<Key>> scratch,
+                    Places& places, ThreadPool& pool, const Cancel& cancel, unsigned bits) {
+  std::span<KeyIndex<Key>> from = items, to = scratch.first(items.size());
   const unsigned passes = (bits + kMostDigitBits - 1) / kMostDigitBits;
   const unsigned digit_bits = passes > 0 ? (bits + passes - 1) / passes : 0;
+  for (unsigned pass = 0; pass < passes; ++pass) {
+    const std::size_t most = items.size() - 1;  // a pass in which all agree is left out
+    if (part<Key>(from, to.data(), pass * digit_bits, digit_bits, most, places, pool, cancel) <=
+        most) {
+      std::swap(from, to);
+    }
+  }
+  if (from.data() != items.data()) std::copy(from.begin(), from.end(), items.begin());
+}
+
+/// Sorts by the lowest `bits`, in this worker's cache, with an odd number of passes: what is in
+/// `from` ends in `to`.
+template <class Key>
+void sort_bucket(KeyIndex<Key>* from, KeyIndex<Key>* to, std::size_t count, unsigned bits) {
+  constexpr unsigned kDigitBits = 8;
+  constexpr std::size_t kFew = 24;
+  if (count <= kFew) {
+    const Key mask = (Key{1} << bits) - 1;
+    for (std::size_t i = 0; i < count; ++i) {
+      const KeyIndex<Key> item = from[i];
+      std::size_t at = i;
+      for (; at > 0 && (to[at - 1].key & mask) > (item.key & mask); --at) to[at] = to[at - 1];
+      to[at] = item;
+    }
+    return;
+  }
+  const unsigned passes = (bits + kDigitBits - 1) / kDigitBits | 1u;
+  const unsigned digit_bits = (bits + passes - 1) / passes;
   const std::size_t digits = std::size_t{1} << digit_bits;
+  std::uint32_t next[std::size_t{1} << kDigitBits];
   for (unsigned pass = 0; pass < passes; ++pass) {
     const unsigned shift = pass * digit_bits;
     const auto digit = [&](Key key) {
       return static_cast<std::size_t>(key >> shift) & (digits - 1);
     };
-    pool.run(workers, [&](unsigned worker) {
-      Histogram& histogram = places[worker];
-      std::fill_n(histogram.begin(), digits, 0u);
-      poll_through(share(worker), share(worker + 1), cancel, [&](std::size_t i, std::size_t end) {
-        for (; i < end; ++i) ++histogram[digit(from[i].key)];
-      });
-    });
-    if (cancel.raised()) throw Cancelled();
-
-    // Digit by digit, and within a digit worker by worker: that is what keeps the order.
+    std::fill_n(next, digits, 0u);
+    for (std::size_t i = 0; i < count; ++i) ++next[digit(from[i].key)];
     std::uint32_t place = 0;
-    bool all_agree = false;
     for (std::size_t d = 0; d < digits; ++d) {
-      const std::uint32_t before = place;
-      for (Histogram& histogram : places) {
-        const std::uint32_t size = histogram[d];
-        histogram[d] = place;
-        place += size;
-      }
-      all_agree = all_agree || place - before == count;
+      const std::uint32_t size = next[d];
+      next[d] = place;
+      place += size;
     }
-    if (all_agree) continue;
-
-    pool.run(workers, [&](unsigned worker) {
-      Histogram& next = places[worker];
-      poll_through(share(worker), share(worker + 1), cancel, [&](std::size_t i, std::size_t end) {
-        for (; i < end; ++i) to[next[digit(from[i].key)]++] = from[i];
-      });
-    });
-    if (cancel.raised()) throw Cancelled();
+    for (std::size_t i = 0; i < count; ++i) to[next[digit(from[i].key)]++] = from[i];
     std::swap(from, to);
   }
-  if (from.data() != items.data())
-    std::copy(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count), items.begin());
+}
+
+/// Most significant digit first, and then the buckets, each in a worker's cache. False, and nothing
+/// done, if too many items are in one bucket.
+template <class Key>
+bool sort_by_buckets(std::span<KeyIndex<Key>> items, std::span<KeyIndex<Key>> scratch,
+                     Places& places, ThreadPool& pool, const Cancel& cancel, unsigned bits) {
+  const unsigned rest = bits - kMostDigitBits;
+  const std::size_t most = items.size() / 8;
+  if (part<Key>(items, scratch.data(), rest, kMostDigitBits, most, places, pool, cancel) > most) {
+    return false;
+  }
+  // Where the last worker stopped writing a bucket, it ends.
+  const Histogram& ends = places.back();
+  pool.for_each_chunk(ends.size(), 8, [&](std::size_t first, std::size_t last) {
+    for (std::size_t d = first; d < last && !cancel.raised(); ++d) {
+      const std::size_t begin = d > 0 ? ends[d - 1] : 0;
+      sort_bucket(scratch.data() + begin, items.data() + begin, ends[d] - begin, rest);
+    }
+  });
+  if (cancel.raised()) throw Cancelled();
+  return true;
+}
+
+template <class Key>
+void sort(std::span<KeyIndex<Key>> items, std::span<KeyIndex<Key>> scratch, ThreadPool& pool,
+          const Cancel& cancel, unsigned bits) {
+  if (scratch.size() < items.size()) {
+    throw std::invalid_argument("radix_sort: scratch is too small");
+  }
+  if (items.empty()) return;
+  Places places(std::clamp<std::size_t>(items.size() / kMinimumShare, 1, pool.size()));
+  const bool is_large = items.size() >= kFewItems && bits > 2 * kMostDigitBits;
+  if (is_large && sort_by_buckets(items, scratch, places, pool, cancel, bits)) return;
+  sort_by_passes(items, scratch, places, pool, cancel, bits);
 }
 
 }  // namespace

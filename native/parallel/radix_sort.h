@@ -16,8 +16,10 @@ struct KeyIndex {
 };
 
 /// Sorts by key, items with equal keys keeping their order: the result is the same for any number
-/// of threads. Least significant digit first, at most eleven bits a pass; passes in which all keys
-/// agree are left out. `scratch` has the size of `items`; at most 2³² − 1 items.
+/// of threads. Eleven bits part the items into buckets, which are sorted in a worker's cache; few
+/// or crowded ones are sorted as a whole, least significant digit first, at most eleven bits a
+/// pass, and passes in which all keys agree are left out. `scratch` has the size of `items`; at
+/// most 2³² − 1 items.
 /// @param bits  of the keys; those above are null
 /// @throws Cancelled; `items` is then in any order.
 void radix_sort(std::span<KeyIndex<std::uint32_t>> items,
