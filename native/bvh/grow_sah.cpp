@@ -144,10 +144,12 @@ class SahBuilder {
     grove_.plan_top(treelet_count_);
     grove_.grow(treelet_count_, [&](std::uint32_t i, Treelet& t) {
       const ClusterRange& range = treelets_[i];
+      std::uint32_t items[kTreeletSize], count = 0;
       for (std::uint32_t c = range.begin; c < range.end; ++c) {
         const BinaryNode& cluster = cluster_[ids_[c]];
-        kernel_.load(items_, &sorted_[cluster.first], cluster.info, t);
+        for (std::uint32_t k = 0; k < cluster.info; ++k) items[count++] = sorted_[cluster.first + k];
       }
+      kernel_.load(items_, items, count, t);
       kernel_.sah(items_.leaf, scale_, t);
     });
   }

@@ -16,6 +16,7 @@ struct ItemList {
   std::uint32_t* moved;
   std::uint8_t (*bin)[4];
   HWY_INLINE Lanes box(std::uint32_t id) const { return load_box(t.box[id].v); }
+  HWY_INLINE void fetch(std::uint32_t, std::uint32_t) const {}  // in the cache
   HWY_INLINE std::uint32_t weight(std::uint32_t) const { return 1; }
 };
 
@@ -25,7 +26,11 @@ struct ClusterList {
   std::uint32_t* moved;
   std::uint8_t (*bin)[4];
   HWY_INLINE Lanes box(std::uint32_t id) const { return node_box(cluster[id]); }
+  HWY_INLINE void fetch(std::uint32_t i, std::uint32_t end) const {
+    if (i + kAhead < end) hwy::Prefetch(&cluster[ids[i + kAhead]]);
+  }
   HWY_INLINE std::uint32_t weight(std::uint32_t id) const { return cluster[id].info; }
+  static constexpr std::uint32_t kAhead = 16;
 };
 
 struct Range {
@@ -131,18 +136,29 @@ HWY_INLINE void split_range(const List& list, float scale, const Range& range, R
   const auto factors = hn::Load(Float4(), factor);
   const hn::FixedTag<std::int32_t, 4> di;
   const hn::FixedTag<std::uint32_t, 4> du;
-  for (std::uint32_t i = range.begin; i < range.end; ++i) {
+  const auto put_into_bins = [&](std::uint32_t i) {
     const std::uint32_t id = list.ids[i];
     const Lanes box = list.box(id);
     const auto cell = hn::ConvertTo(di, hn::Mul(hn::Sub(centre_of(box), start), factors));
-    hn::StoreU(hn::U8FromU32(hn::BitCast(du, cell)), hn::FixedTag<std::uint8_t, 4>(), list.bin[i]);
+    const auto bytes = hn::U8FromU32(hn::BitCast(du, cell));
+    std::uint32_t packed = hn::GetLane(hn::BitCast(hn::FixedTag<std::uint32_t, 1>(), bytes));
+    std::memcpy(list.bin[i], &packed, 4);
     const std::uint32_t weight = list.weight(id);
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::uint32_t k = list.bin[i][axis];
-      store_box(merge(load_box(bins.box[axis][k]), box), bins.box[axis][k]);
-      bins.items[axis][k] += weight;
+    for (int axis = 0; axis < 3; ++axis, packed >>= 8) {
+      float* const bin = bins.box[axis][packed & 255u];
+      store_box(merge(load_box(bin), box), bin);
+      bins.items[axis][packed & 255u] += weight;
     }
+  };
+  // Neighbours are often in the same bins and would wait for each other: from two ends of the list.
+  const std::uint32_t half = length / 2;
+  for (std::uint32_t i = 0; i < half; ++i) {
+    list.fetch(range.begin + i, range.begin + half);
+    put_into_bins(range.begin + i);
+    list.fetch(range.begin + half + i, range.end);
+    put_into_bins(range.begin + half + i);
   }
+  if (2 * half < length) put_into_bins(range.end - 1);
   const Plane plane = cheapest_plane(bins, side, count, scale);
   if (plane.axis < 0) return split_in_halves(list, range, left, right);
 
@@ -152,6 +168,7 @@ HWY_INLINE void split_range(const List& list, float scale, const Range& range, R
   std::uint32_t to_left = range.begin, to_right = 0;
   std::uint32_t* const moved = list.moved + range.begin;
   for (std::uint32_t i = range.begin; i < range.end; ++i) {
+    list.fetch(i, range.end);
     const std::uint32_t id = list.ids[i];
     const bool is_right = list.bin[i][plane.axis] >= plane.bin;
     const Lanes centre = point_box(centre_of(list.box(id)));
