@@ -59,7 +59,9 @@ void split_in_halves(const List& list, const Range& range, Range* left, Range* r
   *right = measure_range(list, middle, range.end);
 }
 
-constexpr int kMostBins = 16;
+constexpr int kBinBits = 4, kMostBins = 1 << kBinBits;
+/// Keeps the last centre in the last bin.
+constexpr float kInside = 0.9999f / kMostBins;
 
 struct Bins {
   alignas(32) float box[3][kMostBins][8];
@@ -120,7 +122,7 @@ HWY_INLINE void split_range(const List& list, float scale, const Range& range, R
   for (int axis = 0; axis < 3; ++axis) {
     // Sides of which the reciprocal or the product overflows do not take part.
     if (!(side[axis] > 1e-36f && side[axis] < kFloatMax)) side[axis] = 0.0f;
-    factor[axis] = side[axis] > 0.0f ? static_cast<float>(count) * 0.9999f / side[axis] : 0.0f;
+    factor[axis] = side[axis] > 0.0f ? static_cast<float>(count) * kInside / side[axis] : 0.0f;
     any = any || side[axis] > 0.0f;
   }
   factor[3] = 0.0f;
@@ -134,31 +136,33 @@ HWY_INLINE void split_range(const List& list, float scale, const Range& range, R
     }
   }
   const auto factors = hn::Load(Float4(), factor);
-  const hn::FixedTag<std::int32_t, 4> di;
   const hn::FixedTag<std::uint32_t, 4> du;
   const auto put_into_bins = [&](std::uint32_t i) {
     const std::uint32_t id = list.ids[i];
     const Lanes box = list.box(id);
-    const auto cell = hn::ConvertTo(di, hn::Mul(hn::Sub(centre_of(box), start), factors));
-    const auto bytes = hn::U8FromU32(hn::BitCast(du, cell));
+    // In [1, 2): the highest bits of the mantissa are the bin.
+    const auto cell = hn::Mul(hn::Sub(centre_of(box), start), factors);
+    const auto bits = hn::BitCast(du, hn::Add(cell, hn::Set(Float4(), 1.0f)));
+    const auto bin = hn::And(hn::ShiftRight<23 - kBinBits>(bits), hn::Set(du, kMostBins - 1u));
+    const auto bytes = hn::U8FromU32(bin);
     std::uint32_t packed = hn::GetLane(hn::BitCast(hn::FixedTag<std::uint32_t, 1>(), bytes));
     std::memcpy(list.bin[i], &packed, 4);
     const std::uint32_t weight = list.weight(id);
     for (int axis = 0; axis < 3; ++axis, packed >>= 8) {
-      float* const bin = bins.box[axis][packed & 255u];
-      store_box(merge(load_box(bin), box), bin);
+      float* const sum = bins.box[axis][packed & 255u];
+      store_box(merge(load_box(sum), box), sum);
       bins.items[axis][packed & 255u] += weight;
     }
   };
-  // Neighbours are often in the same bins and would wait for each other: from two ends of the list.
-  const std::uint32_t half = length / 2;
-  for (std::uint32_t i = 0; i < half; ++i) {
-    list.fetch(range.begin + i, range.begin + half);
-    put_into_bins(range.begin + i);
-    list.fetch(range.begin + half + i, range.end);
-    put_into_bins(range.begin + half + i);
+  // Neighbours are often in the same bins and would wait for each other: so from four places.
+  const std::uint32_t part = length / 4;
+  for (std::uint32_t i = 0; i < part; ++i) {
+    for (std::uint32_t from = range.begin; from < range.begin + 4 * part; from += part) {
+      list.fetch(from + i, from + part);
+      put_into_bins(from + i);
+    }
   }
-  if (2 * half < length) put_into_bins(range.end - 1);
+  for (std::uint32_t i = range.begin + 4 * part; i < range.end; ++i) put_into_bins(i);
   const Plane plane = cheapest_plane(bins, side, count, scale);
   if (plane.axis < 0) return split_in_halves(list, range, left, right);
 
