@@ -8,6 +8,7 @@
 #include "bvh/grove.h"
 #include "bvh/morton_order.h"
 #include "bvh/topology.h"
+#include "parallel/first_touch.h"
 
 namespace komorebi {
 namespace {
@@ -38,7 +39,11 @@ class SahBuilder {
         scale_(1.0f / max_of(order.largest_side, 1e-30f)),
         grove_(items, order.count, scale_, pool, cancel),
         sorted_(order.count),
-        cluster_(order.count) {}
+        cluster_(order.count) {
+    touch_pages(sorted_.data(), sorted_.size() * sizeof(std::uint32_t), pool);
+    // About so many clusters there will be.
+    touch_pages(cluster_.data(), cluster_.size() / 3 * sizeof(BinaryNode), pool);
+  }
 
   WideTree build() {
     find_clusters();
@@ -147,7 +152,8 @@ class SahBuilder {
       std::uint32_t items[kTreeletSize], count = 0;
       for (std::uint32_t c = range.begin; c < range.end; ++c) {
         const BinaryNode& cluster = cluster_[ids_[c]];
-        for (std::uint32_t k = 0; k < cluster.info; ++k) items[count++] = sorted_[cluster.first + k];
+        for (std::uint32_t k = 0; k < cluster.info; ++k)
+          items[count++] = sorted_[cluster.first + k];
       }
       kernel_.load(items_, items, count, t);
       kernel_.sah(items_.leaf, scale_, t);

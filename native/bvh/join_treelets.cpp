@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "parallel/first_touch.h"
+
 namespace komorebi {
 namespace {
 
@@ -62,6 +64,8 @@ class TreeletJoiner {
       wide.leaves.resize(leaves);
       out = reinterpret_cast<std::byte*>(wide.leaves.data());
     }
+    touch_pages(wide.nodes.data(), nodes * sizeof(WideNode), pool);
+    touch_pages(out, leaves * unit, pool);
     pool.for_each_chunk(followers_.size(), 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end && !cancel.raised(); ++i) {
         const Follower& it = followers_[i];

@@ -34,9 +34,12 @@ class LeafCorners {
   static constexpr std::uint32_t kLanes = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
 
   static HWY_INLINE std::uint32_t mask_bits(Mask mask) {
-    std::uint8_t bytes[8] = {};
+    std::uint8_t bytes[8];
     hn::StoreMaskBits(Tag(), mask, bytes);
-    return bytes[0] | std::uint32_t{bytes[1]} << 8;
+    if constexpr (kLanes < 16) return bytes[0];
+    std::uint16_t bits;
+    std::memcpy(&bits, bytes, 2);
+    return bits;
   }
 
   /// The vector from triangle `first` on; behind the last one stands the last again.

@@ -8,6 +8,7 @@
 
 #include "bvh/topology.h"
 #include "bvh/treelet.h"
+#include "parallel/first_touch.h"
 
 namespace komorebi {
 namespace {
@@ -41,6 +42,13 @@ Aabb extent(const Items& items, ThreadPool& pool, const Cancel& cancel) {
     all = united(all, part);  // min and max: the order does not show
   });
   return all;
+}
+
+template <class T>
+Scratch<T> touched(std::size_t count, ThreadPool& pool) {
+  Scratch<T> scratch(count);
+  touch_pages(scratch.data(), count * sizeof(T), pool);
+  return scratch;
 }
 
 std::vector<Aabb> sample_of(const Items& items) {
@@ -100,7 +108,7 @@ MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& 
   std::atomic<std::uint32_t> left_out{0};
   const BuildKernel& kernel = build_kernel();
   if (grid.wide) {
-    order.wide = Scratch<KeyIndex<std::uint64_t>>(total);
+    order.wide = touched<KeyIndex<std::uint64_t>>(total, pool);
     pool.for_each_chunk(total, kGrain, [&](std::size_t begin, std::size_t end) {
       if (cancel.raised()) return;
       for (std::size_t i = begin; i < end; ++i) {
@@ -111,7 +119,7 @@ MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& 
       }
     });
     check(cancel);
-    Scratch<KeyIndex<std::uint64_t>> scratch(total);
+    auto scratch = touched<KeyIndex<std::uint64_t>>(total, pool);
     // A code of all ones is that of the last cell of all, too: whatever has it is told apart here.
     radix_sort({order.wide.data(), total}, {scratch.data(), total}, pool, cancel);
     if (left_out > 0) {
@@ -121,14 +129,14 @@ MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& 
       }
     }
   } else {
-    order.narrow = Scratch<KeyIndex<std::uint32_t>>(total);
+    order.narrow = touched<KeyIndex<std::uint32_t>>(total, pool);
     pool.for_each_chunk(total, kGrain, [&](std::size_t begin, std::size_t end) {
       if (cancel.raised()) return;
       left_out += kernel.code(items, grid, static_cast<std::uint32_t>(begin),
                               static_cast<std::uint32_t>(end), 0x80000000u, order.narrow.data());
     });
     check(cancel);
-    Scratch<KeyIndex<std::uint32_t>> scratch(total);
+    auto scratch = touched<KeyIndex<std::uint32_t>>(total, pool);
     const unsigned bits = left_out > 0 ? 32 : grid.is_one ? 30 : 31;
     radix_sort({order.narrow.data(), total}, {scratch.data(), total}, pool, cancel, bits);
   }
