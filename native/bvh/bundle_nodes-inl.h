@@ -27,133 +27,149 @@ struct Waiting {
   std::uint32_t rays[2 * kStackSize + kWidth];
 };
 
-/// Rays as a node's boxes meet them: where they come from, as what is to be added to the side that
-/// each meets first and to the other one (−from_lower to a lower side, from_upper to the negative
-/// of an upper one).
-struct WalkingRays {
-  const BundleSlab& slab;
-#if HWY_TARGET == HWY_AVX3
-  HWY_ALIGN float range[kBundle][2 * kWidth];  ///< eight times begin, eight times minus_end
-  HWY_ALIGN float from[kBundle][3][2 * kWidth];
+/// Those of `rays` that point to the same octant as the first one.
+HWY_INLINE std::uint32_t same_octant(const BundleSlab& slab, std::uint32_t rays) {
+  const std::uint32_t first = rays & (0u - rays);
+  for (const std::uint32_t backward : slab.backward) {
+    rays &= (backward & first) != 0 ? backward : ~backward;
+  }
+  return rays;
+}
 
-  HWY_INLINE WalkingRays(const BundleSlab& of, std::uint32_t rays) : slab(of) {
-    const hn::FixedTag<float, 2 * kWidth> d;
+#if HWY_TARGET == HWY_AVX3
+/// Rays of one octant as a node's boxes meet them. Both ends of a ray stand in one vector: eight
+/// times that of the sides met first, eight times that of the others.
+struct WalkingRays {
+  using Tag = hn::FixedTag<float, 2 * kWidth>;
+  bool backward[3];
+  HWY_ALIGN float range[kBundle][2 * kWidth];    ///< begin, −end
+  HWY_ALIGN float from[kBundle][3][2 * kWidth];  ///< −from_lower, from_upper, or turned round
+  float inverse[kBundle][3];
+
+  HWY_INLINE WalkingRays(const BundleSlab& slab, std::uint32_t rays) {
+    const Tag d;
     const auto is_first = hn::FirstN(d, kWidth);
+    for (int axis = 0; axis < 3; ++axis) backward[axis] = (slab.backward[axis] & rays) != 0;
     for (; rays != 0; rays &= rays - 1) {
       const auto i = static_cast<std::uint32_t>(__builtin_ctz(rays));
       hn::Store(hn::IfThenElse(is_first, hn::Set(d, slab.begin[i]), hn::Set(d, slab.minus_end[i])),
                 d, range[i]);
       for (int axis = 0; axis < 3; ++axis) {
-        const bool backward = slab.side[axis][i] != 0;
-        const float lower = -slab.from_lower[axis][i], upper = slab.from_upper[axis][i];
-        const auto first = hn::Set(d, backward ? upper : lower);
-        hn::Store(hn::IfThenElse(is_first, first, hn::Set(d, backward ? lower : upper)), d,
-                  from[i][axis]);
+        const auto lower = hn::Neg(hn::Set(d, slab.from_lower[axis][i]));
+        const auto upper = hn::Set(d, slab.from_upper[axis][i]);
+        hn::Store(backward[axis] ? hn::IfThenElse(is_first, upper, lower)
+                                 : hn::IfThenElse(is_first, lower, upper),
+                  d, from[i][axis]);
+        inverse[i][axis] = slab.inverse[axis][i];
       }
     }
   }
-#else
-  HWY_ALIGN float from[3][2][kBundle];
-
-  HWY_INLINE WalkingRays(const BundleSlab& of, std::uint32_t rays) : slab(of) {
-    const RayTag d;
-    const RayIndexTag di;
-    for (std::uint32_t i = 0; i < kBundle && (rays >> i) != 0; i += kRayLanes) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto backward =
-            hn::RebindMask(d, hn::Gt(hn::Load(di, slab.side[axis] + i), hn::Zero(di)));
-        const RayVec lower = hn::Neg(hn::Load(d, slab.from_lower[axis] + i));
-        const RayVec upper = hn::Load(d, slab.from_upper[axis] + i);
-        hn::Store(hn::IfThenElse(backward, upper, lower), d, from[axis][0] + i);
-        hn::Store(hn::IfThenElse(backward, lower, upper), d, from[axis][1] + i);
-      }
-    }
-  }
-#endif
 };
 
-#if HWY_TARGET == HWY_AVX3
-/// Eight boxes with both sides in one vector: [lower, −upper] and [−upper, lower].
-struct NodePlanes {
-  using Tag = hn::FixedTag<float, 2 * kWidth>;
-  HWY_ALIGN float row[3][2][2 * kWidth];
-
-  HWY_INLINE explicit NodePlanes(const WideNode& node) {
-    const Tag d;
-    const hn::Rebind<std::int32_t, Tag> di;
-    const hn::Rebind<std::uint8_t, Tag> d8;
-    const auto sign = hn::IfThenElseZero(hn::Not(hn::FirstN(d, kWidth)), hn::Set(d, -0.0f));
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto q = hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(d8, node.q[axis][0])));
-      const auto plane = hn::MulAdd(q, hn::Set(d, node.step(axis)), hn::Set(d, node.origin[axis]));
-      const auto both = hn::Xor(plane, sign);
-      hn::Store(both, d, row[axis][0]);
-      hn::Store(hn::ConcatLowerUpper(d, both, both), d, row[axis][1]);
-    }
-  }
-
-  /// Adds the bit of `ray` to children that it meets.
-  HWY_INLINE void meet(const WalkingRays& rays, std::uint32_t ray, hn::Vec<MaskTag>* met) const {
-    const Tag d;
-    const BoxTag half;
-    const MaskTag dm;
-    auto both = hn::Load(d, rays.range[ray]);
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto plane = hn::Load(d, row[axis][rays.slab.side[axis][ray]]);
-      const auto distance = hn::Add(plane, hn::Load(d, rays.from[ray][axis]));
-      both = hn::Max(both, hn::Mul(distance, hn::Set(d, rays.slab.inverse[axis][ray])));
-    }
+/// For each child of a node, those of `rays` that meet its box.
+HWY_INLINE void meet(const WideNode& node, const WalkingRays& walking, std::uint32_t rays,
+                     hn::Vec<MaskTag>* met) {
+  const WalkingRays::Tag d;
+  const hn::Rebind<std::int32_t, WalkingRays::Tag> di;
+  const hn::Rebind<std::uint8_t, WalkingRays::Tag> d8;
+  const BoxTag half;
+  const MaskTag dm;
+  const auto sign = hn::IfThenElseZero(hn::Not(hn::FirstN(d, kWidth)), hn::Set(d, -0.0f));
+  const auto sides = [&](int axis) HWY_ATTR {  // [lower, −upper], or [−upper, lower]
+    const auto q = hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(d8, node.q[axis][0])));
+    const auto plane = hn::MulAdd(q, hn::Set(d, node.step(axis)), hn::Set(d, node.origin[axis]));
+    const auto both = hn::Xor(plane, sign);
+    return walking.backward[axis] ? hn::ConcatLowerUpper(d, both, both) : both;
+  };
+  const auto x = sides(0), y = sides(1), z = sides(2);
+  auto all = hn::Zero(dm);
+  for (; rays != 0; rays &= rays - 1) {
+    const auto i = static_cast<std::uint32_t>(__builtin_ctz(rays));
+    const auto distance = [&](const auto& plane, int axis) HWY_ATTR {
+      return hn::Mul(hn::Add(plane, hn::Load(d, walking.from[i][axis])),
+                     hn::Set(d, walking.inverse[i][axis]));
+    };
+    const auto xy = hn::Max(distance(x, 0), distance(y, 1));
+    const auto both = hn::Max(hn::Max(hn::Load(d, walking.range[i]), distance(z, 2)), xy);
     const auto meets = hn::Le(hn::LowerHalf(half, both), hn::Neg(hn::UpperHalf(half, both)));
-    met[0] =
-        hn::IfThenElse(hn::RebindMask(dm, meets), hn::Or(met[0], hn::Set(dm, 1u << ray)), met[0]);
+    all = hn::Or(all, hn::IfThenElseZero(hn::RebindMask(dm, meets), hn::Set(dm, 1u << i)));
   }
-};
+  met[0] = all;
+}
 #else
-/// Lower sides of eight boxes and negative upper sides.
-struct NodePlanes {
-  HWY_ALIGN float row[3][2][kWidth];
+/// Rays of one octant as a node's boxes meet them.
+struct WalkingRays {
+  /// Where setting all lanes takes more than a load, numbers stand there as often as needed.
+  static constexpr std::size_t kCopies = hn::MaxLanes(BoxTag()) == 4 ? 4 : 1;
+  struct OneRay {
+    HWY_ALIGN float first[3][kCopies];  ///< to be added to the sides met first, as they are below
+    float last[3][kCopies];             ///< to the others
+    float inverse[3][kCopies];
+    float begin[kCopies], minus_end[kCopies];
+  };
+  bool backward[3];
+  OneRay ray[kBundle];
 
-  HWY_INLINE explicit NodePlanes(const WideNode& node) {
-    const BoxTag d;
-    for (int axis = 0; axis < 3; ++axis) {
-      for (std::size_t part = 0; part < kWidth; part += hn::MaxLanes(d)) {
-        hn::Store(planes(node, axis, 0, part), d, row[axis][0] + part);
-        hn::Store(hn::Neg(planes(node, axis, 1, part)), d, row[axis][1] + part);
-      }
-    }
+  static HWY_INLINE void set(float* to, float x) {
+    for (std::size_t k = 0; k < kCopies; ++k) to[k] = x;
+  }
+  static HWY_INLINE BoxVec get(const float* from) {
+    if constexpr (kCopies == 1) return hn::Set(BoxTag(), *from);
+    return hn::Load(BoxTag(), from);
   }
 
-  /// Adds the bit of `ray` to children that it meets.
-  HWY_INLINE void meet(const WalkingRays& rays, std::uint32_t ray, hn::Vec<MaskTag>* met) const {
-    const BoxTag d;
-    const MaskTag dm;
-    constexpr std::size_t kLanes = hn::MaxLanes(d);
-    const auto inverse_x = hn::Set(d, rays.slab.inverse[0][ray]);
-    const auto inverse_y = hn::Set(d, rays.slab.inverse[1][ray]);
-    const auto inverse_z = hn::Set(d, rays.slab.inverse[2][ray]);
-    const std::int32_t x = rays.slab.side[0][ray], y = rays.slab.side[1][ray],
-                       z = rays.slab.side[2][ray];
-    const auto bit = hn::Set(dm, 1u << ray);
-    for (std::size_t part = 0; part < kWidth; part += kLanes) {
-      const auto farther = [&](const auto& t, int axis, std::int32_t side, int which,
-                               const auto& inverse) HWY_ATTR {
-        const auto plane = hn::Load(d, row[axis][side] + part);
-        const auto distance = hn::Add(plane, hn::Set(d, rays.from[axis][which][ray]));
-        return hn::Max(t, hn::Mul(distance, inverse));
-      };
-      auto enter = hn::Set(d, rays.slab.begin[ray]);
-      auto minus_leave = hn::Set(d, rays.slab.minus_end[ray]);
-      enter = farther(enter, 0, x, 0, inverse_x);
-      minus_leave = farther(minus_leave, 0, 1 - x, 1, inverse_x);
-      enter = farther(enter, 1, y, 0, inverse_y);
-      minus_leave = farther(minus_leave, 1, 1 - y, 1, inverse_y);
-      enter = farther(enter, 2, z, 0, inverse_z);
-      minus_leave = farther(minus_leave, 2, 1 - z, 1, inverse_z);
-      const auto meets = hn::RebindMask(dm, hn::Le(enter, hn::Neg(minus_leave)));
-      met[part / kLanes] = hn::Or(met[part / kLanes], hn::IfThenElseZero(meets, bit));
+  HWY_INLINE WalkingRays(const BundleSlab& slab, std::uint32_t rays) {
+    for (int axis = 0; axis < 3; ++axis) backward[axis] = (slab.backward[axis] & rays) != 0;
+    for (; rays != 0; rays &= rays - 1) {
+      const auto i = static_cast<std::uint32_t>(__builtin_ctz(rays));
+      for (int axis = 0; axis < 3; ++axis) {
+        const float lower = -slab.from_lower[axis][i], upper = slab.from_upper[axis][i];
+        set(ray[i].first[axis], backward[axis] ? upper : lower);
+        set(ray[i].last[axis], backward[axis] ? lower : upper);
+        set(ray[i].inverse[axis], slab.inverse[axis][i]);
+      }
+      set(ray[i].begin, slab.begin[i]);
+      set(ray[i].minus_end, slab.minus_end[i]);
     }
   }
 };
+
+/// For each child of a node, those of `rays` that meet its box.
+HWY_INLINE void meet(const WideNode& node, const WalkingRays& walking, std::uint32_t rays,
+                     hn::Vec<MaskTag>* met) {
+  const BoxTag d;
+  const MaskTag dm;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  HWY_ALIGN float first[3][kWidth], last[3][kWidth];  // lower sides, and negative upper ones
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t part = 0; part < kWidth; part += kLanes) {
+      const auto lower = planes(node, axis, 0, part);
+      const auto minus_upper = hn::Neg(planes(node, axis, 1, part));
+      hn::Store(lower, d, (walking.backward[axis] ? last : first)[axis] + part);
+      hn::Store(minus_upper, d, (walking.backward[axis] ? first : last)[axis] + part);
+    }
+  }
+  for (std::size_t part = 0; part < kWidth; part += kLanes) met[part / kLanes] = hn::Zero(dm);
+  for (; rays != 0; rays &= rays - 1) {
+    const auto i = static_cast<std::uint32_t>(__builtin_ctz(rays));
+    const WalkingRays::OneRay& ray = walking.ray[i];
+    for (std::size_t part = 0; part < kWidth; part += kLanes) {
+      const auto farther = [&](const BoxVec& t, const float* side, const float* from,
+                               const float* inverse) HWY_ATTR {
+        const auto distance = hn::Add(hn::Load(d, side + part), WalkingRays::get(from));
+        return hn::Max(t, hn::Mul(distance, WalkingRays::get(inverse)));
+      };
+      auto enter = WalkingRays::get(ray.begin), minus_leave = WalkingRays::get(ray.minus_end);
+      for (int axis = 0; axis < 3; ++axis) {
+        enter = farther(enter, first[axis], ray.first[axis], ray.inverse[axis]);
+        minus_leave = farther(minus_leave, last[axis], ray.last[axis], ray.inverse[axis]);
+      }
+      const auto meets = hn::RebindMask(dm, hn::Le(enter, hn::Neg(minus_leave)));
+      auto& to = met[part / kLanes];
+      to = hn::Or(to, hn::IfThenElseZero(meets, hn::Set(dm, 1u << i)));
+    }
+  }
+}
 #endif
 
 /// Moves the lanes whose bit is set to the front. (Highway's Compress copies its table to the stack
@@ -182,11 +198,7 @@ HWY_INLINE void visit_node(const WideNode& node, const WalkingRays& walking, std
   const hn::Rebind<std::uint8_t, MaskTag> d8;
   constexpr std::size_t kLanes = hn::MaxLanes(dm);
   hn::Vec<MaskTag> met[kWidth / kLanes];
-  for (auto& m : met) m = hn::Zero(dm);
-  const NodePlanes planes_of(node);
-  for (; rays != 0; rays &= rays - 1) {
-    planes_of.meet(walking, static_cast<std::uint32_t>(__builtin_ctz(rays)), met);
-  }
+  meet(node, walking, rays, met);
   for (std::size_t part = 0; part < kWidth; part += kLanes) {
     const auto index = hn::Iota(dm, static_cast<std::uint32_t>(part));
     const auto inner = hn::Add(index, hn::Set(dm, node.first_child));

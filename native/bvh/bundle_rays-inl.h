@@ -32,6 +32,7 @@ struct BundleSlab {
   HWY_ALIGN std::int32_t side[3][kBundle];  ///< of a box met first: 0 lower, 1 upper
   HWY_ALIGN float begin[kBundle];           ///< of the part of the ray that matters
   HWY_ALIGN float minus_end[kBundle];       ///< the end of it, negative
+  std::uint32_t backward[3] = {};           ///< rays of `side` 1, a bit each
 };
 
 template <class Mask>
@@ -74,6 +75,7 @@ HWY_INLINE std::uint32_t make_slabs(const Bundle& rays, std::uint32_t first, con
     hn::Store(inverse, d, slab.inverse[axis] + first);
     hn::Store(hn::IfThenElseZero(hn::RebindMask(di, backward), hn::Set(di, 1)), di,
               slab.side[axis] + first);
+    slab.backward[axis] |= lane_bits(backward, first);
   }
   return lane_bits(fine, first);
 }

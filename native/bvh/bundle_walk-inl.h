@@ -64,7 +64,13 @@ HWY_INLINE std::uint32_t walk_mesh(const MeshView& mesh, const LocalBundle& bund
     const void* node = mesh.tree.nodes + child;
     return child & Waiting::kLeaf ? leaf : node;
   };
-  return walk_bundle(mesh.tree, WalkingRays(bundle.slab, rays), rays, visit, address);
+  std::uint32_t found = 0;
+  while (rays != 0) {  // all at once unless the instance is turned
+    const std::uint32_t now = same_octant(bundle.slab, rays);
+    found |= walk_bundle(mesh.tree, WalkingRays(bundle.slab, now), now, visit, address);
+    rays &= ~now;
+  }
+  return found;
 }
 
 /// Rays in the world.
@@ -167,7 +173,13 @@ HWY_INLINE std::uint32_t occluded_together(const SceneView& scene, WorldBundle& 
   const auto address = [&](std::uint32_t child) HWY_ATTR -> const void* {
     return scene.tree.nodes + (child & Waiting::kLeaf ? 0 : child);
   };
-  return walk_bundle(scene.tree, WalkingRays(bundle.slab, rays), rays, visit, address);
+  std::uint32_t found = 0;
+  while (rays != 0) {  // all at once: those of a bundle point to one octant
+    const std::uint32_t now = same_octant(bundle.slab, rays);
+    found |= walk_bundle(scene.tree, WalkingRays(bundle.slab, now), now, visit, address);
+    rays &= ~now;
+  }
+  return found;
 }
 
 }  // namespace
