@@ -20,7 +20,7 @@ struct LocalBundle {
     LocalRay local;
     for (int axis = 0; axis < 3; ++axis) {
       const bool backward = slab.side[axis][i] != 0;
-      const float lower = slab.from_lower[axis][i], upper = slab.from_upper[axis][i];
+      const float lower = -slab.minus_from_lower[axis][i], upper = slab.from_upper[axis][i];
       local.slab.near_origin[axis] = backward ? upper : lower;
       local.slab.far_origin[axis] = backward ? lower : upper;
       local.slab.inverse[axis] = backward ? -slab.inverse[axis][i] : slab.inverse[axis][i];
@@ -172,7 +172,7 @@ class OpenCluster {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto inverse = hn::Set(d, bundle.slab.inverse[axis][i]);
       const auto lower =
-          hn::Sub(hn::Sub(lo[axis], padding), hn::Set(d, bundle.slab.from_lower[axis][i]));
+          hn::Add(hn::Sub(lo[axis], padding), hn::Set(d, bundle.slab.minus_from_lower[axis][i]));
       const auto minus_upper =
           hn::Sub(hn::Set(d, bundle.slab.from_upper[axis][i]), hn::Add(hi[axis], padding));
       const bool backward = bundle.slab.side[axis][i] != 0;

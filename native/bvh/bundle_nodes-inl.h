@@ -36,102 +36,49 @@ HWY_INLINE std::uint32_t same_octant(const BundleSlab& slab, std::uint32_t rays)
   return rays;
 }
 
-#if HWY_TARGET == HWY_AVX3
-/// Rays of one octant as a node's boxes meet them. Both ends of a ray stand in one vector: eight
-/// times that of the sides met first, eight times that of the others.
-struct WalkingRays {
-  using Tag = hn::FixedTag<float, 2 * kWidth>;
-  bool backward[3];
-  HWY_ALIGN float range[kBundle][2 * kWidth];    ///< begin, −end
-  HWY_ALIGN float from[kBundle][3][2 * kWidth];  ///< −from_lower, from_upper, or turned round
-  float inverse[kBundle][3];
-
+/// Rays of one octant as a node's boxes meet them: what is to be added to the side met first of a
+/// box and to the other one (−from_lower to a lower side, from_upper to a negative upper one).
+class WalkingRays {
+ public:
   HWY_INLINE WalkingRays(const BundleSlab& slab, std::uint32_t rays) {
-    const Tag d;
-    const auto is_first = hn::FirstN(d, kWidth);
-    for (int axis = 0; axis < 3; ++axis) backward[axis] = (slab.backward[axis] & rays) != 0;
-    for (; rays != 0; rays &= rays - 1) {
-      const auto i = static_cast<std::uint32_t>(__builtin_ctz(rays));
-      hn::Store(hn::IfThenElse(is_first, hn::Set(d, slab.begin[i]), hn::Set(d, slab.minus_end[i])),
-                d, range[i]);
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto lower = hn::Neg(hn::Set(d, slab.from_lower[axis][i]));
-        const auto upper = hn::Set(d, slab.from_upper[axis][i]);
-        hn::Store(backward[axis] ? hn::IfThenElse(is_first, upper, lower)
-                                 : hn::IfThenElse(is_first, lower, upper),
-                  d, from[i][axis]);
-        inverse[i][axis] = slab.inverse[axis][i];
+    for (int axis = 0; axis < 3; ++axis) {
+      backward[axis] = (slab.backward[axis] & rays) != 0;
+      column_[axis] = backward[axis] ? slab.from_upper[axis] : slab.minus_from_lower[axis];
+      column_[3 + axis] = backward[axis] ? slab.minus_from_lower[axis] : slab.from_upper[axis];
+      column_[6 + axis] = slab.inverse[axis];
+    }
+    column_[kBegin] = slab.begin;
+    column_[kMinusEnd] = slab.minus_end;
+    if constexpr (kCopied) {
+      for (; rays != 0; rays &= rays - 1) {
+        const auto i = static_cast<std::uint32_t>(__builtin_ctz(rays));
+        for (int k = 0; k < kColumns; ++k) {
+          hn::Store(hn::Set(BoxTag(), column_[k][i]), BoxTag(), copies_[i][k]);
+        }
       }
     }
   }
-};
 
-/// For each child of a node, those of `rays` that meet its box.
-HWY_INLINE void meet(const WideNode& node, const WalkingRays& walking, std::uint32_t rays,
-                     hn::Vec<MaskTag>* met) {
-  const WalkingRays::Tag d;
-  const hn::Rebind<std::int32_t, WalkingRays::Tag> di;
-  const hn::Rebind<std::uint8_t, WalkingRays::Tag> d8;
-  const BoxTag half;
-  const MaskTag dm;
-  const auto sign = hn::IfThenElseZero(hn::Not(hn::FirstN(d, kWidth)), hn::Set(d, -0.0f));
-  const auto sides = [&](int axis) HWY_ATTR {  // [lower, −upper], or [−upper, lower]
-    const auto q = hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(d8, node.q[axis][0])));
-    const auto plane = hn::MulAdd(q, hn::Set(d, node.step(axis)), hn::Set(d, node.origin[axis]));
-    const auto both = hn::Xor(plane, sign);
-    return walking.backward[axis] ? hn::ConcatLowerUpper(d, both, both) : both;
-  };
-  const auto x = sides(0), y = sides(1), z = sides(2);
-  auto all = hn::Zero(dm);
-  for (; rays != 0; rays &= rays - 1) {
-    const auto i = static_cast<std::uint32_t>(__builtin_ctz(rays));
-    const auto distance = [&](const auto& plane, int axis) HWY_ATTR {
-      return hn::Mul(hn::Add(plane, hn::Load(d, walking.from[i][axis])),
-                     hn::Set(d, walking.inverse[i][axis]));
-    };
-    const auto xy = hn::Max(distance(x, 0), distance(y, 1));
-    const auto both = hn::Max(hn::Max(hn::Load(d, walking.range[i]), distance(z, 2)), xy);
-    const auto meets = hn::Le(hn::LowerHalf(half, both), hn::Neg(hn::UpperHalf(half, both)));
-    all = hn::Or(all, hn::IfThenElseZero(hn::RebindMask(dm, meets), hn::Set(dm, 1u << i)));
-  }
-  met[0] = all;
-}
-#else
-/// Rays of one octant as a node's boxes meet them.
-struct WalkingRays {
-  /// Where setting all lanes takes more than a load, numbers stand there as often as needed.
-  static constexpr std::size_t kCopies = hn::MaxLanes(BoxTag()) == 4 ? 4 : 1;
-  struct OneRay {
-    HWY_ALIGN float first[3][kCopies];  ///< to be added to the sides met first, as they are below
-    float last[3][kCopies];             ///< to the others
-    float inverse[3][kCopies];
-    float begin[kCopies], minus_end[kCopies];
-  };
   bool backward[3];
-  OneRay ray[kBundle];
 
-  static HWY_INLINE void set(float* to, float x) {
-    for (std::size_t k = 0; k < kCopies; ++k) to[k] = x;
-  }
-  static HWY_INLINE BoxVec get(const float* from) {
-    if constexpr (kCopies == 1) return hn::Set(BoxTag(), *from);
-    return hn::Load(BoxTag(), from);
+  HWY_INLINE BoxVec first(std::uint32_t i, int axis) const { return get(i, axis); }
+  HWY_INLINE BoxVec last(std::uint32_t i, int axis) const { return get(i, 3 + axis); }
+  HWY_INLINE BoxVec inverse(std::uint32_t i, int axis) const { return get(i, 6 + axis); }
+  HWY_INLINE BoxVec begin(std::uint32_t i) const { return get(i, kBegin); }
+  HWY_INLINE BoxVec minus_end(std::uint32_t i) const { return get(i, kMinusEnd); }
+
+ private:
+  static constexpr int kBegin = 9, kMinusEnd = 10, kColumns = 11;
+  /// Where setting all lanes takes more than a load, each number is kept as often as needed.
+  static constexpr bool kCopied = hn::MaxLanes(BoxTag()) == 4;
+
+  HWY_INLINE BoxVec get(std::uint32_t i, int column) const {
+    if constexpr (kCopied) return hn::Load(BoxTag(), copies_[i][column]);
+    return hn::Set(BoxTag(), column_[column][i]);
   }
 
-  HWY_INLINE WalkingRays(const BundleSlab& slab, std::uint32_t rays) {
-    for (int axis = 0; axis < 3; ++axis) backward[axis] = (slab.backward[axis] & rays) != 0;
-    for (; rays != 0; rays &= rays - 1) {
-      const auto i = static_cast<std::uint32_t>(__builtin_ctz(rays));
-      for (int axis = 0; axis < 3; ++axis) {
-        const float lower = -slab.from_lower[axis][i], upper = slab.from_upper[axis][i];
-        set(ray[i].first[axis], backward[axis] ? upper : lower);
-        set(ray[i].last[axis], backward[axis] ? lower : upper);
-        set(ray[i].inverse[axis], slab.inverse[axis][i]);
-      }
-      set(ray[i].begin, slab.begin[i]);
-      set(ray[i].minus_end, slab.minus_end[i]);
-    }
-  }
+  const float* column_[kColumns];
+  HWY_ALIGN float copies_[kCopied ? kBundle : 1][kColumns][kCopied ? 4 : 1];
 };
 
 /// For each child of a node, those of `rays` that meet its box.
@@ -152,17 +99,14 @@ HWY_INLINE void meet(const WideNode& node, const WalkingRays& walking, std::uint
   for (std::size_t part = 0; part < kWidth; part += kLanes) met[part / kLanes] = hn::Zero(dm);
   for (; rays != 0; rays &= rays - 1) {
     const auto i = static_cast<std::uint32_t>(__builtin_ctz(rays));
-    const WalkingRays::OneRay& ray = walking.ray[i];
     for (std::size_t part = 0; part < kWidth; part += kLanes) {
-      const auto farther = [&](const BoxVec& t, const float* side, const float* from,
-                               const float* inverse) HWY_ATTR {
-        const auto distance = hn::Add(hn::Load(d, side + part), WalkingRays::get(from));
-        return hn::Max(t, hn::Mul(distance, WalkingRays::get(inverse)));
-      };
-      auto enter = WalkingRays::get(ray.begin), minus_leave = WalkingRays::get(ray.minus_end);
+      auto enter = walking.begin(i), minus_leave = walking.minus_end(i);
       for (int axis = 0; axis < 3; ++axis) {
-        enter = farther(enter, first[axis], ray.first[axis], ray.inverse[axis]);
-        minus_leave = farther(minus_leave, last[axis], ray.last[axis], ray.inverse[axis]);
+        const auto inverse = walking.inverse(i, axis);
+        const auto to_first = hn::Add(hn::Load(d, first[axis] + part), walking.first(i, axis));
+        const auto to_last = hn::Add(hn::Load(d, last[axis] + part), walking.last(i, axis));
+        enter = hn::Max(enter, hn::Mul(to_first, inverse));
+        minus_leave = hn::Max(minus_leave, hn::Mul(to_last, inverse));
       }
       const auto meets = hn::RebindMask(dm, hn::Le(enter, hn::Neg(minus_leave)));
       auto& to = met[part / kLanes];
@@ -170,7 +114,6 @@ HWY_INLINE void meet(const WideNode& node, const WalkingRays& walking, std::uint
     }
   }
 }
-#endif
 
 /// Moves the lanes whose bit is set to the front. (Highway's Compress copies its table to the stack
 /// at every call when GCC 12 compiles it, where there is no instruction for it.)

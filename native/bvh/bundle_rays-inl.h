@@ -26,7 +26,7 @@ struct Bundle {
 /// ones from `from_upper`, whether near or far: for a direction of either sign that is where
 /// make_slab_ray puts them.
 struct BundleSlab {
-  HWY_ALIGN float from_lower[3][kBundle];
+  HWY_ALIGN float minus_from_lower[3][kBundle];
   HWY_ALIGN float from_upper[3][kBundle];
   HWY_ALIGN float inverse[3][kBundle];      ///< |1 / direction|
   HWY_ALIGN std::int32_t side[3][kBundle];  ///< of a box met first: 0 lower, 1 upper
@@ -70,7 +70,7 @@ HWY_INLINE std::uint32_t make_slabs(const Bundle& rays, std::uint32_t first, con
                    hn::And(hn::Gt(inverse, hn::Zero(d)), hn::Le(inverse, hn::Set(d, kFloatMax))));
     fine = hn::And(fine,
                    hn::And(hn::Lt(hn::Abs(from_lower), reach), hn::Lt(hn::Abs(from_upper), reach)));
-    hn::Store(from_lower, d, slab.from_lower[axis] + first);
+    hn::Store(hn::Neg(from_lower), d, slab.minus_from_lower[axis] + first);
     hn::Store(from_upper, d, slab.from_upper[axis] + first);
     hn::Store(inverse, d, slab.inverse[axis] + first);
     hn::Store(hn::IfThenElseZero(hn::RebindMask(di, backward), hn::Set(di, 1)), di,
@@ -93,7 +93,7 @@ HWY_INLINE std::uint32_t clip(const BundleSlab& slab, const Aabb& box, const Bun
     const auto backward =
         hn::RebindMask(d, hn::Ne(hn::Load(di, slab.side[axis] + first), hn::Zero(di)));
     const RayVec lower =
-        hn::Sub(hn::Set(d, box.lo[axis]), hn::Load(d, slab.from_lower[axis] + first));
+        hn::Add(hn::Set(d, box.lo[axis]), hn::Load(d, slab.minus_from_lower[axis] + first));
     const RayVec minus_upper =
         hn::Sub(hn::Load(d, slab.from_upper[axis] + first), hn::Set(d, box.hi[axis]));
     const RayVec at_lower = hn::Mul(lower, inverse);
