@@ -39,30 +39,45 @@ void occluded_bundles_scalar(const SceneView& scene, const RayBundles& bundles,
 constexpr Kernel kScalarKernel = {"SCALAR", &intersect_all_scalar, &occluded_all_scalar,
                                   &occluded_bundles_scalar};
 
-/// The kernel of that name, or null if there is none that this machine runs.
-const Kernel* find_kernel(const char* name) {
-  for (const Kernel* const* kernel = kSimdKernels; *kernel != nullptr; ++kernel) {
-    if (std::strcmp((*kernel)->name, name) == 0 && machine_has(name)) return *kernel;
+constexpr int kScalar = -1, kUnknown = -2;  // where others are indices in kSimdKernels
+
+/// Of the kernel of that name; kUnknown if there is none that this machine runs.
+int find_kernel(const char* name) {
+  for (int i = 0; kSimdKernels[i] != nullptr; ++i) {
+    if (std::strcmp(kSimdKernels[i]->name, name) == 0 && machine_has(name)) return i;
   }
-  return std::strcmp(name, kScalarKernel.name) == 0 ? &kScalarKernel : nullptr;
+  return std::strcmp(name, kScalarKernel.name) == 0 ? kScalar : kUnknown;
 }
 
-const Kernel* best_kernel() {
-  if (const char* wanted = std::getenv("KOMOREBI_ISA"); wanted != nullptr) {
-    if (const Kernel* kernel = find_kernel(wanted); kernel != nullptr) return kernel;
-  }
-  for (const Kernel* const* kernel = kSimdKernels; *kernel != nullptr; ++kernel) {
-    if (machine_has((*kernel)->name)) return *kernel;
-  }
-  return &kScalarKernel;
+/// What the environment asks for; null if nothing.
+const char* wanted_by_environment() {
+  const char* const wanted = std::getenv("KOMOREBI_ISA");
+  return wanted != nullptr && *wanted != '\0' ? wanted : nullptr;
 }
 
-std::atomic<const Kernel*> forced_kernel{nullptr};
+int best_kernel() {
+  if (const char* wanted = wanted_by_environment(); wanted != nullptr) {
+    if (const int kernel = find_kernel(wanted); kernel != kUnknown) return kernel;
+  }
+  for (int i = 0; kSimdKernels[i] != nullptr; ++i) {
+    if (machine_has(kSimdKernels[i]->name)) return i;
+  }
+  return kScalar;
+}
+
+std::atomic<int> forced_kernel{kUnknown};
 
 const Kernel& active_kernel() {
-  static const Kernel* const best = best_kernel();
-  const Kernel* const forced = forced_kernel.load(std::memory_order_relaxed);
-  return forced != nullptr ? *forced : *best;
+  const int index = active_kernel_index();
+  return index == kScalar ? kScalarKernel : *kSimdKernels[index];
+}
+
+[[noreturn]] void refuse(const std::string& name, const std::string& says) {
+  std::string all;
+  for (const std::string& built : built_instruction_sets())
+    all += (all.empty() ? "" : ", ") + built;
+  throw std::invalid_argument(says + ": there is no instruction set \"" + name +
+                              "\" in this build or machine, only " + all);
 }
 
 #if defined(__x86_64__) || defined(__i386__)
@@ -95,6 +110,12 @@ bool machine_has(const char* kernel_name) {
 #endif
 }
 
+int active_kernel_index() {
+  static const int best = best_kernel();
+  const int forced = forced_kernel.load(std::memory_order_relaxed);
+  return forced != kUnknown ? forced : best;
+}
+
 void intersect(const SceneView& scene, const RaySpan& rays, Hit* hits) {
   active_kernel().intersect(scene, rays, hits);
 }
@@ -120,12 +141,14 @@ const char* active_instruction_set() {
   return active_kernel().name;
 }
 
+void check_instruction_set() {
+  const char* const wanted = wanted_by_environment();
+  if (wanted != nullptr && find_kernel(wanted) == kUnknown) refuse(wanted, "KOMOREBI_ISA");
+}
+
 void force_instruction_set(const std::string& name) {
-  const Kernel* kernel = name.empty() ? nullptr : find_kernel(name.c_str());
-  if (kernel == nullptr && !name.empty()) {
-    throw std::invalid_argument("there is no kernel for the instruction set \"" + name +
-                                "\" in this build or machine");
-  }
+  const int kernel = name.empty() ? kUnknown : find_kernel(name.c_str());
+  if (kernel == kUnknown && !name.empty()) refuse(name, "force_instruction_set");
   forced_kernel.store(kernel, std::memory_order_relaxed);
 }
 

@@ -16,6 +16,10 @@ struct Kernel {
 /// Null-terminated, best first; whether the machine has the instruction set is another question.
 extern const Kernel* const kSimdKernels[];
 
+/// Which entry of a table made by KOMOREBI_KERNELS (bvh/simd_targets.h) is in use; −1: none, but
+/// the scalar functions.
+int active_kernel_index();
+
 /// Whether this machine and its operating system run the kernel of that name.
 bool machine_has(const char* kernel_name);
 

@@ -33,6 +33,10 @@ std::vector<std::string> built_instruction_sets();
 /// The one in use: the best, unless the environment variable KOMOREBI_ISA names another.
 const char* active_instruction_set();
 
+/// Where the module and the program begin.
+/// @throws std::invalid_argument if KOMOREBI_ISA names none of built_instruction_sets().
+void check_instruction_set();
+
 /// For tests: from now on uses this one ("" for the best again).
 /// @throws std::invalid_argument if it is not among built_instruction_sets().
 void force_instruction_set(const std::string& name);

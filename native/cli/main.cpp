@@ -5,6 +5,7 @@
 #include <exception>
 #include <stdexcept>
 
+#include "bvh/traverse.h"
 #include "cli/options.h"
 #include "io/image.h"
 #include "render/dump.h"
@@ -109,6 +110,7 @@ int main(int argc, char** argv) {
       std::fputs(komorebi::usage(), stdout);
       return 0;
     }
+    komorebi::check_instruction_set();
     return render(*options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "komorebi: %s\n", error.what());

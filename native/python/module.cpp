@@ -56,6 +56,7 @@ const Cancel& cancel_or_never(const std::shared_ptr<Cancel>& cancel) {
 }
 
 PYBIND11_MODULE(_komorebi, module) {
+  check_instruction_set();
   module.doc() = "Komorebi's native core; import komorebi_core, which says what each part does.";
   module.attr("__version__") = KOMOREBI_VERSION;
   module.def("build_info", &build_info,

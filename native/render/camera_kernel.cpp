@@ -1,8 +1,6 @@
 #include "render/camera_kernel.h"
 
-#include <cstring>
-
-#include "bvh/traverse.h"
+#include "bvh/kernel.h"
 #include "render/one_ray.h"
 
 namespace komorebi {
@@ -23,10 +21,8 @@ void start_rays_scalar(const RenderContext& context, const CameraBlock& block) {
 }  // namespace
 
 void start_rays(const RenderContext& context, const CameraBlock& block) {
-  const char* const name = active_instruction_set();
-  for (const CameraKernel* const* kernel = kSimdCameraKernels; *kernel != nullptr; ++kernel) {
-    if (std::strcmp((*kernel)->name, name) == 0) return (*kernel)->start_rays(context, block);
-  }
+  const int kernel = active_kernel_index();
+  if (kernel >= 0) return kSimdCameraKernels[kernel]->start_rays(context, block);
   start_rays_scalar(context, block);
 }
 

@@ -15,11 +15,10 @@ struct CameraBlock {
 /// start_ray (one_ray.h) for many samples at once, compiled for one instruction set; equal to it in
 /// every bit. A camera ray starts at t_min = 0.
 struct CameraKernel {
-  const char* name;
   void (*start_rays)(const RenderContext& context, const CameraBlock& block);
 };
 
-/// Null-terminated, best first.
+/// In the order of KOMOREBI_KERNELS (bvh/simd_targets.h).
 extern const CameraKernel* const kSimdCameraKernels[];
 
 /// The same in the active instruction set (bvh/traverse.h).

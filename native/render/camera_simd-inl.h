@@ -92,7 +92,7 @@ void start_rays(const RenderContext& context, const CameraBlock& block) {
 }  // namespace
 
 extern const CameraKernel kCameraKernel;
-constexpr CameraKernel kCameraKernel = {&HWY_STR(HWY_NAMESPACE)[2], &start_rays};  // N_AVX2: "AVX2"
+constexpr CameraKernel kCameraKernel = {&start_rays};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace komorebi

@@ -1,20 +1,10 @@
 #include "render/light_kernel.h"
 
-#include <cstring>
-
-#include "bvh/traverse.h"
+#include "bvh/kernel.h"
 #include "render/light.h"
 
 namespace komorebi {
 namespace {
-
-const LightKernel* active_light_kernel() {
-  const char* const name = active_instruction_set();
-  for (const LightKernel* const* kernel = kSimdLightKernels; *kernel != nullptr; ++kernel) {
-    if (std::strcmp((*kernel)->name, name) == 0) return *kernel;
-  }
-  return nullptr;
-}
 
 /// Gathers read by signed 32-bit indices.
 bool in_reach(const RenderContext& context) {
@@ -47,7 +37,8 @@ void sample_lights_scalar(const RenderContext& context, const LightBlock& block)
 }  // namespace
 
 void sample_lights(const RenderContext& context, const LightBlock& block) {
-  const LightKernel* const kernel = active_light_kernel();
+  const int index = active_kernel_index();
+  const LightKernel* const kernel = index < 0 ? nullptr : kSimdLightKernels[index];
   if (kernel != nullptr && context.product.bins > 0 && in_reach(context)) {
     kernel->product(context, block);
   } else if (kernel != nullptr && context.method == Method::kAmbientOcclusion &&

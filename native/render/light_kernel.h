@@ -24,12 +24,11 @@ struct LightBlock {
 /// sample_light (light.h) for many points at once, compiled for one instruction set; equal to it
 /// in every bit.
 struct LightKernel {
-  const char* name;
   void (*ambient)(const RenderContext& context, const LightBlock& block);
   void (*product)(const RenderContext& context, const LightBlock& block);
 };
 
-/// Null-terminated, best first.
+/// In the order of KOMOREBI_KERNELS (bvh/simd_targets.h).
 extern const LightKernel* const kSimdLightKernels[];
 
 /// The same for every method, in the kernels of the active instruction set (bvh/traverse.h) where

@@ -92,8 +92,7 @@ void product(const RenderContext& context, const LightBlock& block) {
 }  // namespace
 
 extern const LightKernel kLightKernel;
-constexpr LightKernel kLightKernel = {&HWY_STR(HWY_NAMESPACE)[2], &ambient,
-                                      &product};  // N_AVX2: "AVX2"
+constexpr LightKernel kLightKernel = {&ambient, &product};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace komorebi

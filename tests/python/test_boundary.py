@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import re
+import subprocess
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -167,3 +171,11 @@ def test_content_tags_tell_any_two_arrays_apart() -> None:
     assert core.content_tags(swapped)[:32] != tags[:32], "the order counts"
     with pytest.raises(ValueError, match="contiguous"):
         core.content_tags(np.zeros((4, 4))[:, :2])
+
+
+def test_an_unknown_instruction_set_is_told_at_import() -> None:
+    environment = {**os.environ, "KOMOREBI_ISA": "MMX"}
+    command = [sys.executable, "-c", "import komorebi_core"]
+    said = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert said.returncode != 0
+    assert re.search(r'ImportError: KOMOREBI_ISA: there is no instruction set "MMX"', said.stderr)

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <stdexcept>
 
 #include "bvh/kernel.h"
@@ -32,6 +33,26 @@ TEST(InstructionSets, AnUnknownOneIsRefusedByName) {
     EXPECT_NE(std::string(error.what()).find("MMX"), std::string::npos);
   }
   EXPECT_EQ(active_instruction_set(), before);
+}
+
+TEST(InstructionSets, TheEnvironmentsIsCheckedByName) {
+  ASSERT_EQ(setenv("KOMOREBI_ISA", "MMX", 1), 0);
+  try {
+    check_instruction_set();
+    ADD_FAILURE() << "MMX was accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("KOMOREBI_ISA"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("\"MMX\""), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("SCALAR"), std::string::npos);
+  }
+  for (const std::string& name : built_instruction_sets()) {
+    setenv("KOMOREBI_ISA", name.c_str(), 1);
+    EXPECT_NO_THROW(check_instruction_set()) << name;
+  }
+  setenv("KOMOREBI_ISA", "", 1);
+  EXPECT_NO_THROW(check_instruction_set());
+  unsetenv("KOMOREBI_ISA");
+  EXPECT_NO_THROW(check_instruction_set());
 }
 
 TEST(InstructionSets, ThisMachineRunsMoreThanTheBaseline) {
