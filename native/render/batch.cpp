@@ -58,62 +58,58 @@ void BatchIntegrator::start_camera_rays(std::uint32_t count) {
 }
 
 void BatchIntegrator::shade() {
-  points_.resize(paths_.size());
-  results_.resize(paths_.size());
   const RaySpan rays = camera_rays_.span();
-  for (std::uint32_t i = 0; i < paths_.size(); ++i) {
-    const Ray ray = rays[i];
-    if (!hits_[i].valid()) {
-      results_[i] = background(context_, ray.direction);
-      continue;
+  results_.resize(paths_.size());
+  surfaces_.clear(rays.count);
+  for (std::uint32_t i = 0; i < rays.count; ++i) {
+    if (hits_[i].valid()) {
+      surfaces_.push(i, pixels_[paths_[i].pixel].seed, paths_[i].sample * context_.light_samples);
+    } else {
+      results_[i] =
+          background(context_, Vec3(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]));
     }
-    points_[i] = surface_point(context_.scene, hits_[i], ray);
-    results_[i] = seen_surface(context_, points_[i]);
+  }
+  surfaces_.fill(context_, hits_.data(), rays);
+  for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
+    results_[surfaces_.path(s)] = seen_surface(surfaces_.normal(s), surfaces_.depth(s));
   }
 }
 
-void BatchIntegrator::begin_light(std::uint32_t path) {
-  light_rays_.begin_point(leaving_origin(points_[path]), camera_rays_.span().time[path],
+void BatchIntegrator::begin_light(std::uint32_t surface) {
+  const std::uint32_t path = surfaces_.path(surface);
+  light_rays_.begin_point(surfaces_.leaving_origin(surface), camera_rays_.span().time[path],
                           hits_[path]);
   light_owners_.push_back(path);
 }
 
 bool BatchIntegrator::light(const Cancel& cancel) {
-  light_block_.clear();
-  block_owners_.clear();
-  for (std::uint32_t i = 0; i < paths_.size(); ++i) {
-    if (!hits_[i].valid()) continue;
-    light_block_.push(points_[i], pixels_[paths_[i].pixel].seed,
-                      paths_[i].sample * context_.light_samples);
-    block_owners_.push_back(i);
-    if (light_block_.full() && !cast_block(cancel)) return false;
+  for (std::uint32_t begin = 0; begin < surfaces_.size(); begin += light_block_.capacity()) {
+    const std::uint32_t end = std::min(surfaces_.size(), begin + light_block_.capacity());
+    if (!cast_block(begin, end, cancel)) return false;
   }
-  if (!cast_block(cancel)) return false;
   flush_light();
-  for (std::uint32_t i = 0; i < paths_.size(); ++i) {
-    if (hits_[i].valid()) results_[i].radiance /= static_cast<float>(context_.light_samples);
+  for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
+    results_[surfaces_.path(s)].radiance /= static_cast<float>(context_.light_samples);
   }
   return !cancel.raised();
 }
 
-bool BatchIntegrator::cast_block(const Cancel& cancel) {
-  light_block_.draw(context_);
-  for (std::uint32_t p = 0; p < light_block_.size(); ++p) {
-    begin_light(block_owners_[p]);
+bool BatchIntegrator::cast_block(std::uint32_t begin, std::uint32_t end, const Cancel& cancel) {
+  light_block_.draw(context_, surfaces_.light_block(begin, end));
+  for (std::uint32_t s = begin; s < end; ++s) {
+    begin_light(s);
     for (std::uint32_t j = 0; j < context_.light_samples; ++j) {
-      const Vec3 contribution = light_block_.contribution(p, j);
+      const Vec3 contribution = light_block_.contribution(s - begin, j);
       if (contribution == Vec3(0.0f)) continue;
       if (light_rays_.ray_count() == kLightRaysPerBatch) {
         flush_light();
         if (cancel.raised()) return false;
-        begin_light(block_owners_[p]);
+        begin_light(s);
       }
-      light_rays_.push_ray(light_block_.direction(p, j), context_.light_distance);
+      light_rays_.push_ray(light_block_.direction(s - begin, j), context_.light_distance);
       contributions_.push_back(contribution);
     }
   }
-  light_block_.clear();
-  block_owners_.clear();
   return true;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/surface_point.h"
 #include "parallel/cancel.h"
 #include "render/bundle_batch.h"
 #include "render/cells.h"
@@ -8,6 +7,7 @@
 #include "render/film.h"
 #include "render/light_block.h"
 #include "render/ray_batch.h"
+#include "render/surface_batch.h"
 
 namespace komorebi {
 
@@ -41,8 +41,8 @@ class BatchIntegrator {
   void start_camera_rays(std::uint32_t count);
   void shade();
   bool light(const Cancel& cancel);
-  bool cast_block(const Cancel& cancel);
-  void begin_light(std::uint32_t path);
+  bool cast_block(std::uint32_t begin, std::uint32_t end, const Cancel& cancel);
+  void begin_light(std::uint32_t surface);
   void flush_light();
 
   RenderContext context_;
@@ -51,10 +51,9 @@ class BatchIntegrator {
   std::vector<std::uint32_t> starts_[kColumns];
   RayBatch camera_rays_;
   std::vector<Hit> hits_;
-  std::vector<SurfacePoint> points_;
+  SurfaceBatch surfaces_;
   std::vector<PixelSample> results_;
   LightBlockBuffer light_block_;
-  std::vector<std::uint32_t> block_owners_;  // the path of each of its points
   BundleBatch light_rays_;
   std::vector<std::uint32_t> light_owners_;  // the path of each of their points
   std::vector<Vec3> contributions_;          // of each light ray, if it arrives

@@ -33,18 +33,8 @@ HWY_INLINE Float sample_filter_lanes(const FilterView& filter, Float u) {
   return hn::IfThenElse(hn::Lt(s, f32(0.0f)), hn::Neg(x), x);
 }
 
-struct Vec3dLanes {
-  Double x, y, z;
-};
-
 HWY_INLINE Vec3dLanes spread(const double* v) {
   return {f64(v[0]), f64(v[1]), f64(v[2])};
-}
-HWY_INLINE Vec3dLanes sum(const Vec3dLanes& a, const Vec3dLanes& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-HWY_INLINE Vec3dLanes scaled(Double s, const Vec3dLanes& v) {
-  return {s * v.x, s * v.y, s * v.z};
 }
 
 HWY_INLINE void store(Float v, float* to) {

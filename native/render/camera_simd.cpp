@@ -11,6 +11,7 @@
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
 #include "render/lanes-inl.h"
+#include "render/vector_lanes-inl.h"
 #include "render/camera_simd-inl.h"
 // clang-format on
 

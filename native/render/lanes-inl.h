@@ -54,6 +54,12 @@ struct Vec3Lanes {
   Float x, y, z;
 };
 
+/// The nine numbers of a matrix, column by column.
+HWY_INLINE const float* entries(const Mat3& m) {
+  static_assert(sizeof(Mat3) == 9 * sizeof(float));
+  return reinterpret_cast<const float*>(&m);
+}
+
 HWY_INLINE Float dot(const Vec3Lanes& a, const Vec3Lanes& b) {
   return (a.x * b.x + a.y * b.y) + a.z * b.z;
 }

@@ -25,11 +25,11 @@ PixelSample background(const RenderContext& context, const Vec3& direction) {
   return result;
 }
 
-PixelSample seen_surface(const RenderContext& context, const SurfacePoint& point) {
+PixelSample seen_surface(const Vec3& normal, float depth) {
   PixelSample result;
   result.alpha = 1.0f;
-  result.depth = camera_depth(context.camera, point.position);
-  result.normal = point.normal;
+  result.depth = depth;
+  result.normal = normal;
   return result;
 }
 
@@ -41,7 +41,7 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
 
   const SurfacePoint point = surface_point(context.scene, hit, ray);
   const Sampler sampler(context.seed, x, y);
-  PixelSample result = seen_surface(context, point);
+  PixelSample result = seen_surface(point.normal, camera_depth(context.camera, point.position));
   for (std::uint32_t j = 0; j < context.light_samples; ++j) {
     const LightSample light =
         sample_light(context, point, sampler, sample * context.light_samples + j);

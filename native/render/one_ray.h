@@ -13,7 +13,7 @@ Ray start_ray(const RenderContext& context, std::uint32_t x, std::uint32_t y, st
 PixelSample background(const RenderContext& context, const Vec3& direction);
 
 /// Alpha, depth and normal of a surface seen by the camera; its radiance is still null.
-PixelSample seen_surface(const RenderContext& context, const SurfacePoint& point);
+PixelSample seen_surface(const Vec3& normal, float depth);
 
 /// One camera sample of one pixel, from the camera to its radiance, one ray after another. This is
 /// the specification of a render; the batches (batch.h) do the same work in another order and must

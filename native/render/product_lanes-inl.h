@@ -68,12 +68,6 @@ HWY_INLINE Uint octahedral_cell_lanes(const Vec3Lanes& d, std::uint32_t n) {
   return hn::Add(hn::Mul(row, u32(n)), column);
 }
 
-/// The nine numbers of a matrix, column by column.
-HWY_INLINE const float* entries(const Mat3& m) {
-  static_assert(sizeof(Mat3) == 9 * sizeof(float));
-  return reinterpret_cast<const float*>(&m);
-}
-
 struct EnvironmentSampleLanes {
   Vec3Lanes direction, radiance;
   Float pdf;

@@ -14,8 +14,8 @@ namespace komorebi {
 /// directions to be chosen by: a room's light comes through its windows, wherever the map is
 /// bright. The directions are those of the map's own space, on an octahedral grid; surfaces count
 /// by the side of a cube that they face. It is a function of the scene and the camera alone, and
-/// only where samples go depends on it, never what they are worth (cf. the trained visibility of
-/// Reibold et al. 2018, "Selective Guided Sampling with Complete Light Transport Paths").
+/// only where samples go depends on it, never what they are worth. Weights by the root of the
+/// second moment: Rath et al. 2020, "Variance-Aware Path Guiding", §3.
 class SkyVisibility {
  public:
   static constexpr std::uint32_t kSides = 6, kGrid = 32;

@@ -1,6 +1,8 @@
 // Light rays drawn in lanes are those of sample_light, to the bit, for every instruction set.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "bvh/traverse.h"
 #include "render/light.h"
 #include "render/light_block.h"
@@ -40,6 +42,37 @@ std::vector<SurfacePoint> some_points(std::size_t count) {
   return points;
 }
 
+/// What a LightBlock reads, padded.
+class PointArrays {
+ public:
+  void push(const SurfacePoint& point, std::uint32_t pixel_seed, std::uint32_t first_index) {
+    for (int c = 0; c < 3; ++c) {
+      floats_[c].push_back(point.normal[c]);
+      floats_[3 + c].push_back(point.geometric_normal[c]);
+    }
+    words_[0].push_back(pixel_seed);
+    words_[1].push_back(first_index);
+  }
+
+  LightBlock block() {
+    LightBlock block{};
+    block.point_count = static_cast<std::uint32_t>(words_[0].size());
+    for (auto& column : floats_) column.resize(column.size() + LightBlock::kLanes);
+    for (auto& column : words_) column.resize(column.size() + LightBlock::kLanes);
+    for (std::size_t c = 0; c < 3; ++c) {
+      block.normal[c] = floats_[c].data();
+      block.geometric_normal[c] = floats_[3 + c].data();
+    }
+    block.pixel_seed = words_[0].data();
+    block.first_index = words_[1].data();
+    return block;
+  }
+
+ private:
+  std::vector<float> floats_[6];
+  std::vector<std::uint32_t> words_[2];
+};
+
 void expect_equal_to_scalar(RenderContext context, std::uint32_t rays, std::size_t count) {
   context.light_samples = rays;
   const std::vector<SurfacePoint> points = some_points(count);
@@ -47,13 +80,14 @@ void expect_equal_to_scalar(RenderContext context, std::uint32_t rays, std::size
     force_instruction_set(name);
     LightBlockBuffer block(rays);
     std::uint32_t lit = 0;
-    for (std::uint32_t first = 0; first < points.size();) {
-      block.clear();
-      std::uint32_t end = first;
-      for (; end < points.size() && !block.full(); ++end) {
-        block.push(points[end], Sampler(3, end, 5).pixel_seed, 11 * end);
+    for (std::uint32_t first = 0; first < points.size(); first += block.capacity()) {
+      const auto end =
+          std::min(first + block.capacity(), static_cast<std::uint32_t>(points.size()));
+      PointArrays arrays;
+      for (std::uint32_t p = first; p < end; ++p) {
+        arrays.push(points[p], Sampler(3, p, 5).pixel_seed, 11 * p);
       }
-      block.draw(context);
+      block.draw(context, arrays.block());
       for (std::uint32_t p = first; p < end; ++p) {
         for (std::uint32_t j = 0; j < rays; ++j) {
           const LightSample expected =
@@ -64,7 +98,6 @@ void expect_equal_to_scalar(RenderContext context, std::uint32_t rays, std::size
           ++lit;
         }
       }
-      first = end;
     }
     EXPECT_GT(lit, points.size() * rays / 3) << name;
   }

@@ -1,0 +1,81 @@
+// Surface points worked out in lanes are those of surface_point, to the bit, for every instruction
+// set: smooth and flat, mirrored, sheared, flattened, far away, huge, tiny and degenerate.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "bvh/traverse.h"
+#include "render/filter.h"
+#include "render/one_ray.h"
+#include "render/ray_batch.h"
+#include "render/surface_batch.h"
+#include "support/scenes.h"
+
+namespace komorebi::testing {
+namespace {
+
+std::shared_ptr<Scene> odd_scene() {
+  const auto smooth = sphere(12, Vec3d(0), 1.0, true).mesh();
+  const auto flat = sphere(7, Vec3d(0), 1.0, false).mesh();
+  const auto put = [](double x, double y, double z, const Vec3d& size) {
+    return glm::scale(glm::translate(Mat4d(1.0), Vec3d(x, y, z)), size);
+  };
+  Mat4d sheared = put(-2, 1, 1, Vec3d(1));
+  sheared[2][0] = 0.8;
+  Polygons sliver;  // one of these triangles has no area, the other hardly any
+  for (const Vec3d& p : {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(2, 0, 0), Vec3d(1, 1e-6, 0.5)}) {
+    sliver.vertex(p);
+  }
+  sliver.face({0, 1, 2});
+  sliver.face({0, 1, 3});
+  return committed(make_scene({{quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}).mesh()},
+                               {smooth, put(0, 0, 1, Vec3d(1))},
+                               {smooth, put(2, 1, 1, Vec3d(-1, 1, 0.5))},
+                               {flat, sheared},
+                               {flat, put(1, -2, 1, Vec3d(0.7, 0.7, 0))},
+                               {flat, put(0, 3, 1, Vec3d(1e-4))},
+                               {smooth, put(0, 700, 60, Vec3d(300))},
+                               {sliver.mesh(), put(-1, -2, 0.5, Vec3d(2))}},
+                              camera_at({4, -6, 3}, {0, 0, 0.8}, 160, 100)));
+}
+
+TEST(SurfaceKernel, EqualsSurfacePoint) {
+  const auto scene = odd_scene();
+  const FilterTable filter(PixelFilter::kBlackmanHarris, 1.5f);
+  const RenderContext context = make_context(*scene, Settings{}, filter.view());
+  RayBatch rays;
+  for (std::uint32_t y = 0; y < 100; ++y) {
+    for (std::uint32_t x = 0; x < 160; ++x) rays.push(start_ray(context, x, y, y % 5));
+  }
+  std::vector<Hit> hits(rays.size());
+  intersect(context.scene, rays.span(), hits.data());
+  std::vector<std::uint32_t> hit_once(scene->view().instance_count, 0);
+  for (const std::string& name : built_instruction_sets()) {
+    force_instruction_set(name);
+    SurfaceBatch surfaces;
+    surfaces.clear(rays.size());
+    for (std::uint32_t i = 0; i < rays.size(); ++i) {
+      if (!hits[i].valid()) continue;
+      surfaces.push(i, i, 3 * i);
+      ++hit_once[hits[i].instance];
+    }
+    surfaces.fill(context, hits.data(), rays.span());
+    const LightBlock block = surfaces.light_block(0, surfaces.size());
+    for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
+      const std::uint32_t i = surfaces.path(s);
+      const SurfacePoint expected = surface_point(context.scene, hits[i], rays.span()[i]);
+      const Vec3 geometric(block.geometric_normal[0][s], block.geometric_normal[1][s],
+                           block.geometric_normal[2][s]);
+      ASSERT_EQ(surfaces.normal(s), expected.normal) << name << " " << i;
+      ASSERT_EQ(geometric, expected.geometric_normal) << name << " " << i;
+      ASSERT_EQ(surfaces.leaving_origin(s), leaving_origin(expected)) << name << " " << i;
+      ASSERT_EQ(surfaces.depth(s), camera_depth(context.camera, expected.position)) << name;
+    }
+  }
+  force_instruction_set("");
+  // All but the tiny one are in the picture.
+  EXPECT_GE(std::count_if(hit_once.begin(), hit_once.end(), [](auto n) { return n > 0; }), 7);
+}
+
+}  // namespace
+}  // namespace komorebi::testing
