@@ -5,7 +5,7 @@
 namespace komorebi {
 
 /// Rays that leave common points, as arrays: what ambient occlusion and sky light cast. What the
-/// rays of a point share is stored and worked out once a point. World space, as Ray; t_min is 0.
+/// rays of a point share is stored once a point. World space, as Ray; t_min is 0.
 struct RayBundles {
   // One entry a point.
   const float *origin_x, *origin_y, *origin_z, *time;
