@@ -89,6 +89,11 @@ void Grove::give_rooms(std::uint32_t node) {
   }
 }
 
+Grove::Stage Grove::lent_part(unsigned part, unsigned parts) const {
+  const std::size_t bytes = lent_.size() / parts / alignof(WideNode) * alignof(WideNode);
+  return {lent_.data() + part * bytes, lent_.data() + (part + 1) * bytes};
+}
+
 void Grove::reserve(Stage& stage, std::size_t bytes) {
   if (static_cast<std::size_t>(stage.end - stage.at) >= bytes) return;
   const std::size_t usual = items_.count() < (1u << 18) ? kSmallBlock : kLargeBlock;
@@ -109,10 +114,11 @@ void Grove::make_room(WideTreelet& to, std::size_t items, Stage& nodes, Stage& l
 void Grove::grow(std::uint32_t treelets, FunctionRef<void(std::uint32_t, Treelet&)> build) {
   if (!is_planned_) prepare(treelets);
   std::atomic<std::uint32_t> next{0};
-  pool_.run(std::min(pool_.size(), treelets), [&](unsigned) {
+  pool_.run(std::min(pool_.size(), treelets), [&](unsigned worker) {
     Scratch<Treelet> desk(1);
     Treelet& t = desk[0];
-    Stage nodes, leaves;
+    Stage nodes = lent_part(2 * worker, 2 * pool_.size());
+    Stage leaves = lent_part(2 * worker + 1, 2 * pool_.size());
     for (std::uint32_t i = next++; i < treelets && !cancel_.raised(); i = next++) {
       t.count = 0;
       build(i, t);

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "bvh/treelet.h"
@@ -20,6 +21,9 @@ class Grove {
   /// @param scale  areas are measured in units of 1 / scale²
   Grove(const Items& items, std::uint32_t most_treelets, float scale, ThreadPool& pool,
         const Cancel& cancel);
+
+  /// Memory that workers may fill before they ask for more; it outlives this.
+  void lend(std::span<std::byte> memory) { lent_ = memory; }
 
   /// Room for nodes of the top tree that stand together; thread-safe. Node 0 is taken.
   std::uint32_t claim(std::uint32_t nodes) { return next_.fetch_add(nodes); }
@@ -52,6 +56,7 @@ class Grove {
     std::byte* end = nullptr;
   };
   void prepare(std::uint32_t treelets);
+  Stage lent_part(unsigned part, unsigned parts) const;
   void reserve(Stage& stage, std::size_t bytes);
   void make_room(WideTreelet& to, std::size_t items, Stage& nodes, Stage& leaves);
   PlanCost plan(std::uint32_t node);
@@ -68,6 +73,7 @@ class Grove {
   Scratch<WideTreelet> treelets_;
   std::mutex mutex_;
   std::vector<Scratch<std::byte>> blocks_;
+  std::span<std::byte> lent_;
 };
 
 }  // namespace komorebi

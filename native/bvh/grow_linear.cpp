@@ -7,12 +7,13 @@ namespace komorebi {
 
 WideTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cancel) {
   WideTree wide;
-  const MortonOrder order = order_by_morton(items, pool, cancel);
+  MortonOrder order = order_by_morton(items, pool, cancel);
   if (order.count > 0) {
     RunTree top;
-    top.cut(order, kRunSize);
+    top.cut(order, kTreeletSize);
     Grove grove(items, static_cast<std::uint32_t>(top.runs.size()),
                 1.0f / max_of(order.largest_side, 1e-30f), pool, cancel);
+    grove.lend({order.spare.data(), order.spare.size()});
     for (std::uint32_t i = 0; i < top.nodes.size(); ++i) {
       const RunTree::Node& node = top.nodes[i];
       if (node.is_run) {
@@ -24,7 +25,7 @@ WideTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cancel)
     }
     const BuildKernel& kernel = build_kernel();
     grove.grow(static_cast<std::uint32_t>(top.runs.size()), [&](std::uint32_t i, Treelet& t) {
-      std::uint32_t run[kRunSize];
+      std::uint32_t run[kTreeletSize];
       order.copy_run(top.runs[i], run, t.code);
       kernel.load(items, run, top.runs[i].count, t);
       kernel.linear(items.leaf, 0.0f, t);

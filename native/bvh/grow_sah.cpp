@@ -30,7 +30,7 @@ struct Part {
 
 class SahBuilder {
  public:
-  SahBuilder(const Items& items, const MortonOrder& order, ThreadPool& pool, const Cancel& cancel)
+  SahBuilder(const Items& items, MortonOrder& order, ThreadPool& pool, const Cancel& cancel)
       : items_(items),
         order_(order),
         pool_(pool),
@@ -40,6 +40,7 @@ class SahBuilder {
         grove_(items, order.count, scale_, pool, cancel),
         sorted_(order.count),
         cluster_(order.count) {
+    grove_.lend({order.spare.data(), order.spare.size()});
     touch_pages(sorted_.data(), sorted_.size() * sizeof(std::uint32_t), pool);
     // About so many clusters there will be.
     touch_pages(cluster_.data(), cluster_.size() / 3 * sizeof(BinaryNode), pool);
@@ -55,7 +56,7 @@ class SahBuilder {
  private:
   void find_clusters() {
     RunTree top;
-    top.cut(order_, kRunSize);
+    top.cut(order_, kTreeletSize);
     std::vector<std::uint32_t> base(top.runs.size()), count(top.runs.size());
     std::atomic<std::uint32_t> next{0};
     pool_.for_each_chunk(top.runs.size(), 4, [&](std::size_t begin, std::size_t end) {
@@ -178,7 +179,7 @@ class SahBuilder {
 }  // namespace
 
 WideTree grow_sah(const Items& items, ThreadPool& pool, const Cancel& cancel) {
-  const MortonOrder order = order_by_morton(items, pool, cancel);
+  MortonOrder order = order_by_morton(items, pool, cancel);
   WideTree wide;
   if (order.count > 0) wide = SahBuilder(items, order, pool, cancel).build();
   wide.left_out = order.left_out;

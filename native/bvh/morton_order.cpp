@@ -119,9 +119,11 @@ MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& 
       }
     });
     check(cancel);
-    auto scratch = touched<KeyIndex<std::uint64_t>>(total, pool);
+    using Item = KeyIndex<std::uint64_t>;
+    order.spare = touched<std::byte>(total * sizeof(Item), pool);
+    const std::span<Item> scratch(reinterpret_cast<Item*>(order.spare.data()), total);
     // A code of all ones is that of the last cell of all, too: whatever has it is told apart here.
-    radix_sort({order.wide.data(), total}, {scratch.data(), total}, pool, cancel);
+    radix_sort({order.wide.data(), total}, scratch, pool, cancel);
     if (left_out > 0) {
       std::uint32_t kept = 0;
       for (std::uint32_t i = 0; i < total; ++i) {
@@ -136,9 +138,11 @@ MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& 
                               static_cast<std::uint32_t>(end), 0x80000000u, order.narrow.data());
     });
     check(cancel);
-    auto scratch = touched<KeyIndex<std::uint32_t>>(total, pool);
+    using Item = KeyIndex<std::uint32_t>;
+    order.spare = touched<std::byte>(total * sizeof(Item), pool);
+    const std::span<Item> scratch(reinterpret_cast<Item*>(order.spare.data()), total);
     const unsigned bits = left_out > 0 ? 32 : grid.is_one ? 30 : 31;
-    radix_sort({order.narrow.data(), total}, {scratch.data(), total}, pool, cancel, bits);
+    radix_sort({order.narrow.data(), total}, scratch, pool, cancel, bits);
   }
   order.left_out = left_out;
   order.count = total - left_out;

@@ -123,7 +123,7 @@ void load(const Items& items, const std::uint32_t* indices, std::uint32_t count,
   const VertexReader vertex(items);
   const bool triangles = items.are_triangles();
   // Triangles lie anywhere in the mesh's arrays: indices are asked for first, then vertices.
-  constexpr std::uint32_t kAhead = 16, kVerticesAhead = 8;
+  constexpr std::uint32_t kAhead = 32, kVerticesAhead = 16;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t at = t.count++;
     const std::uint32_t item = indices[i];
