@@ -10,7 +10,7 @@ WideTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cancel)
   MortonOrder order = order_by_morton(items, pool, cancel);
   if (order.count > 0) {
     RunTree top;
-    top.cut(order, kTreeletSize);
+    top.cut(order, kRunSize);
     Grove grove(items, static_cast<std::uint32_t>(top.runs.size()),
                 1.0f / max_of(order.largest_side, 1e-30f), pool, cancel);
     grove.lend({order.spare.data(), order.spare.size()});
@@ -25,7 +25,7 @@ WideTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cancel)
     }
     const BuildKernel& kernel = build_kernel();
     grove.grow(static_cast<std::uint32_t>(top.runs.size()), [&](std::uint32_t i, Treelet& t) {
-      std::uint32_t run[kTreeletSize];
+      std::uint32_t run[kRunSize];
       order.copy_run(top.runs[i], run, t.code);
       kernel.load(items, run, top.runs[i].count, t);
       kernel.linear(items.leaf, 0.0f, t);

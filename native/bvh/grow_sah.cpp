@@ -56,7 +56,7 @@ class SahBuilder {
  private:
   void find_clusters() {
     RunTree top;
-    top.cut(order_, kTreeletSize);
+    top.cut(order_, kRunSize);
     std::vector<std::uint32_t> base(top.runs.size()), count(top.runs.size());
     std::atomic<std::uint32_t> next{0};
     pool_.for_each_chunk(top.runs.size(), 4, [&](std::size_t begin, std::size_t end) {

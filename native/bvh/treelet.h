@@ -12,7 +12,10 @@
 
 namespace komorebi {
 
-/// Most items of a treelet: they stay in the cache next to a worker's nearest.
+/// Runs of the Morton order that a worker takes at once: their boxes and nodes stay in its nearest
+/// cache.
+inline constexpr std::uint32_t kRunSize = 1024;
+/// Most items on a desk: they stay in the next cache.
 inline constexpr std::uint32_t kTreeletSize = 4096;
 
 /// Eight floats: the low corner and the negated high corner, each with a lane to spare.
