@@ -23,8 +23,8 @@ struct Waiting {
     rays[size++] = rays_of;
   }
   std::uint32_t size = 0;
-  std::uint32_t child[2 * kStackSize + kWidth];  // two are visited at a time
-  std::uint32_t rays[2 * kStackSize + kWidth];
+  std::uint32_t child[kStackSize + kWidth];
+  std::uint32_t rays[kStackSize + kWidth];
 };
 
 /// Those of `rays` that point to the same octant as the first one.

@@ -18,33 +18,21 @@ HWY_INLINE std::uint32_t walk_bundle(const TreeView& tree, const WalkingRays& wa
                                      const Address& address) {
   if (tree.node_count == 0 || rays == 0) return 0;
   Waiting waiting;
-  const std::uint32_t all = rays;
-  std::uint32_t open = all;
+  std::uint32_t open = rays;
   visit_node(tree.nodes[0], walking, rays, waiting);
-  const auto visit_child = [&](std::uint32_t child, std::uint32_t rays_of) HWY_ATTR {
-    rays_of &= open;
-    if (rays_of == 0) return;
-    if (child & Waiting::kLeaf) {
-      open &= ~visit(child & ~Waiting::kLeaf, rays_of);
-    } else {
-      visit_node(tree.nodes[child], walking, rays_of, waiting);
-    }
-  };
   while (waiting.size > 0 && open != 0) {
     const std::uint32_t child = waiting.child[--waiting.size];
-    const std::uint32_t rays_of = waiting.rays[waiting.size];
-    if (waiting.size == 0) {
-      visit_child(child, rays_of);
-      continue;
+    const std::uint32_t active = waiting.rays[waiting.size] & open;
+    // What comes next is fetched meanwhile.
+    if (waiting.size > 0) fetch_soon(address(waiting.child[waiting.size - 1]));
+    if (active == 0) continue;
+    if (child & Waiting::kLeaf) {
+      open &= ~visit(child & ~Waiting::kLeaf, active);
+    } else {
+      visit_node(tree.nodes[child], walking, active, waiting);
     }
-    // Two at a time: the processor works on the second while the first waits for its results.
-    const std::uint32_t second = waiting.child[--waiting.size];
-    const std::uint32_t rays_of_second = waiting.rays[waiting.size];
-    fetch_soon(address(second));
-    visit_child(child, rays_of);
-    visit_child(second, rays_of_second);
   }
-  return all & ~open;
+  return rays & ~open;
 }
 
 /// Rays of `bundle` that a mesh blocks.
