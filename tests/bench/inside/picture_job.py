@@ -27,6 +27,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from compare.inside import engines
 from compare.inside.prepare import open_file, prepare
+from compare.inside.saved import take
 from compare.inside.settle import require, settle_all
 
 
@@ -62,17 +63,6 @@ def cameras(scene: Any, count: int) -> list[Matrix]:
     return [Matrix.Rotation(math.tau * k / count, 4, turn) @ start for k in range(count)]
 
 
-def pixels(path: Path) -> np.ndarray:
-    """The picture that Blender saved."""
-    image = bpy.data.images.load(str(path), check_existing=False)
-    image.colorspace_settings.name = "Non-Color"
-    width, height = image.size
-    flat = np.empty(width * height * 4, dtype=np.float32)
-    image.pixels.foreach_get(flat)
-    bpy.data.images.remove(image)
-    return flat.reshape(height, width, 4)[..., :3]
-
-
 def render(scene: Any, run: dict[str, Any], places: list[Matrix]) -> float:
     """Seconds of the render operator, of all views together."""
     keep = run["keep"]
@@ -86,9 +76,7 @@ def render(scene: Any, run: dict[str, Any], places: list[Matrix]) -> float:
         bpy.ops.render.render(write_still=keep is not None)
         seconds += time.perf_counter() - start
     if keep is not None:
-        saved = Path(keep).with_suffix(".exr")
-        np.save(keep, pixels(saved))
-        saved.unlink()
+        np.save(keep, take(Path(keep).with_suffix(".exr"))[..., :3])
     return seconds
 
 

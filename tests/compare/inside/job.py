@@ -25,22 +25,14 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from compare.inside import bent, engines
 from compare.inside.prepare import open_file, prepare
+from compare.inside.saved import take
 
 
 def render(scene: Any, path: Path) -> np.ndarray:
     """One picture as float32 [row, column, RGBA]."""
     scene.render.filepath = str(path)
     bpy.ops.render.render(write_still=True)
-    if not path.is_file():
-        raise RuntimeError(f"Blender wrote no picture {path.name}")
-    image = bpy.data.images.load(str(path), check_existing=False)
-    image.colorspace_settings.name = "Non-Color"
-    width, height = image.size
-    pixels = np.empty(width * height * 4, dtype=np.float32)
-    image.pixels.foreach_get(pixels)
-    bpy.data.images.remove(image)
-    path.unlink()
-    return pixels.reshape(height, width, 4)
+    return take(path)
 
 
 def main() -> None:
