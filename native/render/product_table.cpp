@@ -60,7 +60,8 @@ Vec3d edge_point(const EnvironmentView& map, std::uint32_t column, double z) {
 
 /// A direction of the bin, (0, 0) and (1, 1) being opposite corners of it; of unit length.
 Vec3d in_bin(std::uint32_t bin, std::uint32_t bins, double x, double y) {
-  const double column = bin % bins + x, row = bin / bins + y;
+  const std::uint32_t bin_column = bin % bins, bin_row = bin / bins;
+  const double column = bin_column + x, row = bin_row + y;
   const Vec2 at(Vec3d(2.0 * column / bins - 1.0, 2.0 * row / bins - 1.0, 0));
   return glm::normalize(Vec3d(direction_from_octahedral(at)));
 }

@@ -11,7 +11,8 @@
 namespace komorebi::testing {
 namespace {
 
-/// A room of 4 × 4 × 3 m with one window of 1 × 1 m in the wall at x = 2, and what is seen from beside it.
+/// A room of 4 × 4 × 3 m with one window of 1 × 1 m in the wall at x = 2, and what is seen from
+/// beside it.
 std::shared_ptr<Scene> room_with_window() {
   const auto wall = [](const Vec3d& corner, const Vec3d& a, const Vec3d& b) {
     return Placed{quad(corner, a, b).mesh()};
