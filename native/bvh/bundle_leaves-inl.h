@@ -54,6 +54,53 @@ class OpenCluster {
 
   /// Whether one of the triangles is hit by ray i: intersect_triangle, eight at a time.
   HWY_INLINE bool blocks(const LocalBundle& bundle, std::uint32_t i) const {
+    return each_part(bundle, i, [&](const Part& part) HWY_ATTR {
+      BoxVec t, determinant;
+      if ((part.sure & are_in_reach(bundle, i, part, t, determinant)) != 0) return true;
+      return part.inside != part.sure && is_hit(bundle, i, part);
+    });
+  }
+
+  /// Keeps in `closest` the best hit of ray i: test_triangle (bvh/closest.h), eight at a time. True
+  /// if it is a new one.
+  HWY_INLINE bool find_closest(const LocalBundle& bundle, std::uint32_t i, std::uint32_t instance,
+                               Closest& closest) const {
+    bool found = false;
+    each_part(bundle, i, [&](const Part& part) HWY_ATTR {
+      const BoxTag d;
+      BoxVec t, determinant;
+      if (unsigned good = part.sure & are_in_reach(bundle, i, part, t, determinant); good != 0) {
+        HWY_ALIGN float all_t[kLanes], u[kLanes], v[kLanes];
+        hn::Store(hn::Add(t, hn::Zero(d)), d, all_t);  // never −0
+        hn::Store(hn::Div(part.v, determinant), d, u);
+        hn::Store(hn::Div(part.w, determinant), d, v);
+        for (; good != 0; good &= good - 1) {
+          const auto k = static_cast<std::uint32_t>(__builtin_ctz(good));
+          const auto primitive = cluster_.primitive(static_cast<std::uint32_t>(part.first) + k);
+          found |= closest.keep({all_t[k], u[k], v[k], instance, primitive});
+        }
+      }
+      if (part.inside != part.sure) found |= keep_hits(bundle, i, part, instance, closest);
+      return false;
+    });
+    return found;
+  }
+
+ private:
+  static constexpr std::size_t kLanes = hn::MaxLanes(BoxTag());
+
+  /// Triangles first…first + lanes − 1 and one ray: their edge functions, which of them the ray
+  /// may meet, and of which of these no edge function is zero.
+  struct Part {
+    std::size_t first;
+    BoxVec u, v, w;
+    unsigned inside, sure;
+  };
+
+  /// The first half of intersect_triangle; hands on the parts with any such triangle, until one is
+  /// answered with true.
+  template <class Visit>
+  HWY_INLINE bool each_part(const LocalBundle& bundle, std::uint32_t i, const Visit& visit) const {
     const BundleShear& shear = bundle.shear;
     const BoxTag d;
     const IndexTag di;
@@ -85,15 +132,10 @@ class OpenCluster {
       const unsigned inside = bits_of(meets) & (used_ >> part);
       if (inside == 0) continue;
       const auto exact = hn::And(hn::And(hn::Ne(u, zero), hn::Ne(v, zero)), hn::Ne(w, zero));
-      const unsigned sure = inside & bits_of(exact);
-      if ((sure & are_in_reach(bundle, i, u, v, w, part)) != 0) return true;
-      if (inside != sure && is_hit(bundle, i, (inside & ~sure) << part)) return true;
+      if (visit(Part{part, u, v, w, inside, inside & bits_of(exact)})) return true;
     }
     return false;
   }
-
- private:
-  static constexpr std::size_t kLanes = hn::MaxLanes(BoxTag());
 
   template <class Mask>
   static HWY_INLINE unsigned bits_of(const Mask& mask) {
@@ -142,17 +184,19 @@ class OpenCluster {
 #endif
   }
 
-  /// The second half of intersect_triangle, for triangles of which the edge functions are known
-  /// and none is zero: whether the hit lies in the triangle's own interval and within t_max.
-  HWY_INLINE unsigned are_in_reach(const LocalBundle& bundle, std::uint32_t i, const BoxVec& u,
-                                   const BoxVec& v, const BoxVec& w, std::size_t part) const {
+  /// The second half of intersect_triangle, for triangles of which no edge function is zero:
+  /// whether the hit lies in the triangle's own interval and within t_max; where, and the
+  /// determinant.
+  HWY_INLINE unsigned are_in_reach(const LocalBundle& bundle, std::uint32_t i, const Part& part,
+                                   BoxVec& moved, BoxVec& determinant) const {
     const BoxTag d;
     const auto sz = hn::Set(d, bundle.shear.sz[i]), o_z = hn::Set(d, bundle.shear.o[2][i]);
     const float* depth = coordinate(bundle.shear.z[i]);
-    const auto determinant = hn::Add(hn::Add(u, v), w);
-    const auto of_a = hn::Mul(u, hn::Mul(sz, hn::Sub(corner(depth, 0, part), o_z)));
-    const auto of_b = hn::Mul(v, hn::Mul(sz, hn::Sub(corner(depth, 1, part), o_z)));
-    const auto of_c = hn::Mul(w, hn::Mul(sz, hn::Sub(corner(depth, 2, part), o_z)));
+    const std::size_t first = part.first;
+    determinant = hn::Add(hn::Add(part.u, part.v), part.w);
+    const auto of_a = hn::Mul(part.u, hn::Mul(sz, hn::Sub(corner(depth, 0, first), o_z)));
+    const auto of_b = hn::Mul(part.v, hn::Mul(sz, hn::Sub(corner(depth, 1, first), o_z)));
+    const auto of_c = hn::Mul(part.w, hn::Mul(sz, hn::Sub(corner(depth, 2, first), o_z)));
     const auto t = hn::Div(hn::Add(hn::Add(of_a, of_b), of_c), determinant);
     auto good =
         hn::And(hn::Ne(determinant, hn::Zero(d)), hn::Le(hn::Abs(t), hn::Set(d, kFloatMax)));
@@ -161,7 +205,7 @@ class OpenCluster {
     auto largest = hn::Zero(d);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float* of = coordinate(static_cast<std::int32_t>(axis));
-      const auto a = corner(of, 0, part), b = corner(of, 1, part), c = corner(of, 2, part);
+      const auto a = corner(of, 0, first), b = corner(of, 1, first), c = corner(of, 2, first);
       lo[axis] = hn::Min(hn::Min(a, b), c);
       hi[axis] = hn::Max(hn::Max(a, b), c);
       largest = hn::Max(largest, hn::Max(hn::Abs(lo[axis]), hn::Abs(hi[axis])));
@@ -181,25 +225,44 @@ class OpenCluster {
     }
     const auto end = hn::Neg(minus_end);
     good = hn::And(good, hn::Le(begin, end));
-    const auto moved = hn::Max(begin, hn::Min(t, end));
+    moved = hn::Max(begin, hn::Min(t, end));
     good = hn::And(good, hn::And(hn::Gt(moved, hn::Set(d, bundle.rays.t_min[i])),
                                  hn::Lt(moved, hn::Set(d, bundle.rays.t_max[i]))));
     return bits_of(good);
   }
 
-  /// Whether one of `candidates` is hit, decided by intersect_triangle itself.
-  HWY_NOINLINE bool is_hit(const LocalBundle& bundle, std::uint32_t i, unsigned candidates) const {
+  /// Triangles of `part` that have an edge function of zero: intersect_triangle itself decides.
+  /// visit(hit, triangle) returns true to stop.
+  template <class Visit>
+  HWY_INLINE bool each_doubtful(const LocalBundle& bundle, std::uint32_t i, const Part& part,
+                                const Visit& visit) const {
     const LocalRay local = bundle.ray(i);
-    for (; candidates != 0; candidates &= candidates - 1) {
-      const auto k = static_cast<std::uint32_t>(__builtin_ctz(candidates));
+    unsigned doubtful = (part.inside & ~part.sure) << part.first;
+    for (; doubtful != 0; doubtful &= doubtful - 1) {
+      const auto k = static_cast<std::uint32_t>(__builtin_ctz(doubtful));
       TriangleHit hit;
       if (intersect_triangle(local.shear, local.slab, local.range, local.t_min, local.t_max,
                              cluster_.position(k, 0), cluster_.position(k, 1),
-                             cluster_.position(k, 2), &hit)) {
+                             cluster_.position(k, 2), &hit) &&
+          visit(hit, k)) {
         return true;
       }
     }
     return false;
+  }
+
+  HWY_NOINLINE bool is_hit(const LocalBundle& bundle, std::uint32_t i, const Part& part) const {
+    return each_doubtful(bundle, i, part, [](const TriangleHit&, std::uint32_t) { return true; });
+  }
+
+  HWY_NOINLINE bool keep_hits(const LocalBundle& bundle, std::uint32_t i, const Part& part,
+                              std::uint32_t instance, Closest& closest) const {
+    bool found = false;
+    each_doubtful(bundle, i, part, [&](const TriangleHit& hit, std::uint32_t k) {
+      found |= closest.keep({hit.t, hit.u, hit.v, instance, cluster_.primitive(k)});
+      return false;
+    });
+    return found;
   }
 
   const ClusterView cluster_;

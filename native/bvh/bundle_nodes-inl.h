@@ -18,13 +18,10 @@ using MaskTag = hn::RebindToUnsigned<BoxTag>;
 struct Waiting {
   static constexpr std::uint32_t kLeaf = 0x80000000u;  ///< bit of a child that is a leaf
 
-  HWY_INLINE void push(std::uint32_t of, std::uint32_t rays_of) {
-    child[size] = of;
-    rays[size++] = rays_of;
-  }
   std::uint32_t size = 0;
   std::uint32_t child[kStackSize + kWidth];
   std::uint32_t rays[kStackSize + kWidth];
+  float begin[kStackSize + kWidth];  ///< for closest hits: where the first of the rays enters it
 };
 
 /// Those of `rays` that point to the same octant as the first one.
@@ -40,7 +37,11 @@ HWY_INLINE std::uint32_t same_octant(const BundleSlab& slab, std::uint32_t rays)
 /// box and to the other one (−from_lower to a lower side, from_upper to a negative upper one).
 class WalkingRays {
  public:
-  HWY_INLINE WalkingRays(const BundleSlab& slab, std::uint32_t rays) {
+  HWY_INLINE WalkingRays(const BundleSlab& slab, std::uint32_t rays)
+      : WalkingRays(slab, rays, slab.minus_end) {}
+
+  /// Rays that end at −minus_end, which stays the caller's.
+  HWY_INLINE WalkingRays(const BundleSlab& slab, std::uint32_t rays, const float* minus_end) {
     for (int axis = 0; axis < 3; ++axis) {
       backward[axis] = (slab.backward[axis] & rays) != 0;
       column_[axis] = backward[axis] ? slab.from_upper[axis] : slab.minus_from_lower[axis];
@@ -48,7 +49,7 @@ class WalkingRays {
       column_[6 + axis] = slab.inverse[axis];
     }
     column_[kBegin] = slab.begin;
-    column_[kMinusEnd] = slab.minus_end;
+    column_[kMinusEnd] = minus_end;
     if constexpr (kCopied) {
       for (; rays != 0; rays &= rays - 1) {
         const auto i = static_cast<std::uint32_t>(__builtin_ctz(rays));
@@ -56,6 +57,13 @@ class WalkingRays {
           hn::Store(hn::Set(BoxTag(), column_[k][i]), BoxTag(), copies_[i][k]);
         }
       }
+    }
+  }
+
+  /// The caller has changed ray i's minus_end.
+  HWY_INLINE void update_end(std::uint32_t i) {
+    if constexpr (kCopied) {
+      hn::Store(hn::Set(BoxTag(), column_[kMinusEnd][i]), BoxTag(), copies_[i][kMinusEnd]);
     }
   }
 
@@ -81,9 +89,11 @@ class WalkingRays {
   HWY_ALIGN float copies_[kCopied ? kBundle : 1][kColumns][kCopied ? 4 : 1];
 };
 
-/// For each child of a node, those of `rays` that meet its box.
+/// For each child of a node, those of `rays` that meet its box; with kNearest also where the first
+/// of them enters it.
+template <bool kNearest>
 HWY_INLINE void meet(const WideNode& node, const WalkingRays& walking, std::uint32_t rays,
-                     hn::Vec<MaskTag>* met) {
+                     hn::Vec<MaskTag>* met, BoxVec* begins) {
   const BoxTag d;
   const MaskTag dm;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
@@ -96,7 +106,10 @@ HWY_INLINE void meet(const WideNode& node, const WalkingRays& walking, std::uint
       hn::Store(minus_upper, d, (walking.backward[axis] ? first : last)[axis] + part);
     }
   }
-  for (std::size_t part = 0; part < kWidth; part += kLanes) met[part / kLanes] = hn::Zero(dm);
+  for (std::size_t part = 0; part < kWidth; part += kLanes) {
+    met[part / kLanes] = hn::Zero(dm);
+    if constexpr (kNearest) begins[part / kLanes] = hn::Set(d, kFloatMax);
+  }
   for (; rays != 0; rays &= rays - 1) {
     const auto i = static_cast<std::uint32_t>(__builtin_ctz(rays));
     for (std::size_t part = 0; part < kWidth; part += kLanes) {
@@ -108,9 +121,13 @@ HWY_INLINE void meet(const WideNode& node, const WalkingRays& walking, std::uint
         enter = hn::Max(enter, hn::Mul(to_first, inverse));
         minus_leave = hn::Max(minus_leave, hn::Mul(to_last, inverse));
       }
-      const auto meets = hn::RebindMask(dm, hn::Le(enter, hn::Neg(minus_leave)));
+      const auto meets = hn::Le(enter, hn::Neg(minus_leave));
       auto& to = met[part / kLanes];
-      to = hn::Or(to, hn::IfThenElseZero(meets, hn::Set(dm, 1u << i)));
+      to = hn::Or(to, hn::IfThenElseZero(hn::RebindMask(dm, meets), hn::Set(dm, 1u << i)));
+      if constexpr (kNearest) {
+        auto& begin = begins[part / kLanes];
+        begin = hn::IfThenElse(meets, hn::Min(begin, enter), begin);
+      }
     }
   }
 }
@@ -134,14 +151,35 @@ HWY_INLINE hn::Vec<MaskTag> pack(const hn::Vec<MaskTag>& v, unsigned bits) {
 #endif
 }
 
-/// Sends `rays` through a node: every child that one of them meets is pushed, leaves on top.
+/// What was pushed from `bottom` on, the nearest to the top.
+HWY_INLINE void sort_from(std::uint32_t bottom, Waiting& waiting) {
+  for (std::uint32_t k = bottom + 1; k < waiting.size; ++k) {
+    const float begin = waiting.begin[k];
+    const std::uint32_t child = waiting.child[k], rays = waiting.rays[k];
+    std::uint32_t place = k;
+    for (; place > bottom && waiting.begin[place - 1] < begin; --place) {
+      waiting.begin[place] = waiting.begin[place - 1];
+      waiting.child[place] = waiting.child[place - 1];
+      waiting.rays[place] = waiting.rays[place - 1];
+    }
+    waiting.begin[place] = begin;
+    waiting.child[place] = child;
+    waiting.rays[place] = rays;
+  }
+}
+
+/// Sends `rays` through a node: every child that one of them meets is pushed, leaves on top, or
+/// with kNearest that which is entered first.
+template <bool kNearest>
 HWY_INLINE void visit_node(const WideNode& node, const WalkingRays& walking, std::uint32_t rays,
                            Waiting& waiting) {
   const MaskTag dm;
   const hn::Rebind<std::uint8_t, MaskTag> d8;
   constexpr std::size_t kLanes = hn::MaxLanes(dm);
   hn::Vec<MaskTag> met[kWidth / kLanes];
-  meet(node, walking, rays, met);
+  BoxVec begins[kWidth / kLanes];
+  meet<kNearest>(node, walking, rays, met, begins);
+  [[maybe_unused]] const std::uint32_t bottom = waiting.size;
   for (std::size_t part = 0; part < kWidth; part += kLanes) {
     const auto index = hn::Iota(dm, static_cast<std::uint32_t>(part));
     const auto inner = hn::Add(index, hn::Set(dm, node.first_child));
@@ -155,8 +193,13 @@ HWY_INLINE void visit_node(const WideNode& node, const WalkingRays& walking, std
     const unsigned some = bytes[0];
     hn::StoreU(pack(hn::IfThenElse(is_inner, inner, leaf), some), dm, waiting.child + waiting.size);
     hn::StoreU(pack(to_push, some), dm, waiting.rays + waiting.size);
+    if constexpr (kNearest) {
+      const auto begin = pack(hn::BitCast(dm, begins[part / kLanes]), some);
+      hn::StoreU(hn::BitCast(BoxTag(), begin), BoxTag(), waiting.begin + waiting.size);
+    }
     waiting.size += static_cast<std::uint32_t>(__builtin_popcount(some));
   }
+  if constexpr (kNearest) sort_from(bottom, waiting);
 }
 
 }  // namespace

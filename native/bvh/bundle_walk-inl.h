@@ -19,7 +19,7 @@ HWY_INLINE std::uint32_t walk_bundle(const TreeView& tree, const WalkingRays& wa
   if (tree.node_count == 0 || rays == 0) return 0;
   Waiting waiting;
   std::uint32_t open = rays;
-  visit_node(tree.nodes[0], walking, rays, waiting);
+  visit_node<false>(tree.nodes[0], walking, rays, waiting);
   while (waiting.size > 0 && open != 0) {
     const std::uint32_t child = waiting.child[--waiting.size];
     const std::uint32_t active = waiting.rays[waiting.size] & open;
@@ -29,7 +29,7 @@ HWY_INLINE std::uint32_t walk_bundle(const TreeView& tree, const WalkingRays& wa
     if (child & Waiting::kLeaf) {
       open &= ~visit(child & ~Waiting::kLeaf, active);
     } else {
-      visit_node(tree.nodes[child], walking, active, waiting);
+      visit_node<false>(tree.nodes[child], walking, active, waiting);
     }
   }
   return rays & ~open;
@@ -119,26 +119,33 @@ HWY_INLINE std::uint32_t enter(const InstanceView& instance, std::uint32_t index
   return entered & rays;
 }
 
-/// Those of `rays` that an instance blocks.
-HWY_INLINE std::uint32_t visit_instance(const SceneView& scene, std::uint32_t index,
-                                        const WorldBundle& bundle, std::uint32_t rays) {
-  const InstanceView& instance = scene.instances[index];
+/// Those of `rays` that see an instance.
+HWY_INLINE std::uint32_t seeing(const InstanceView& instance, const WorldBundle& bundle,
+                                std::uint32_t rays) {
   if ((instance.mask & bundle.some_mask) == 0 || instance.world_bounds.is_empty()) return 0;
   if ((instance.mask & bundle.common_mask) == 0) {  // some see it, others may not
     for (std::uint32_t left = rays; left != 0; left &= left - 1) {
       const auto i = static_cast<std::uint32_t>(__builtin_ctz(left));
       if ((instance.mask & bundle.mask[i]) == 0) rays &= ~(1u << i);
     }
-    if (rays == 0) return 0;
   }
+  return rays;
+}
+
+/// Those of `rays` that an instance blocks.
+HWY_INLINE std::uint32_t visit_instance(const SceneView& scene, std::uint32_t index,
+                                        const WorldBundle& bundle, std::uint32_t rays) {
+  const InstanceView& instance = scene.instances[index];
+  rays = seeing(instance, bundle, rays);
+  if (rays == 0) return 0;
   LocalBundle local;
   rays = enter(instance, index, bundle, rays, local);
   return rays == 0 ? 0 : walk_mesh(scene.meshes[instance.mesh], local, rays);
 }
 
-/// The first `count` rays of `bundle`; a bit for each that is blocked.
-HWY_INLINE std::uint32_t occluded_together(const SceneView& scene, WorldBundle& bundle,
-                                           std::uint32_t count) {
+/// Makes the first `count` rays of `bundle` ready for the tree over instances; those that can hit
+/// anything.
+HWY_INLINE std::uint32_t prepare(WorldBundle& bundle, std::uint32_t count) {
   const RayTag d;
   std::uint32_t rays = 0;
   for (std::uint32_t i = 0; i < count; i += kRayLanes) {
@@ -151,7 +158,13 @@ HWY_INLINE std::uint32_t occluded_together(const SceneView& scene, WorldBundle& 
     hn::Store(hn::Load(d, bundle.rays.t_min + i), d, bundle.slab.begin + i);
     hn::Store(hn::Neg(hn::Load(d, bundle.rays.t_max + i)), d, bundle.slab.minus_end + i);
   }
-  rays &= count == 32 ? ~0u : (1u << count) - 1;
+  return rays & (count == 32 ? ~0u : (1u << count) - 1);
+}
+
+/// The first `count` rays of `bundle`; a bit for each that is blocked.
+HWY_INLINE std::uint32_t occluded_together(const SceneView& scene, WorldBundle& bundle,
+                                           std::uint32_t count) {
+  std::uint32_t rays = prepare(bundle, count);
   if (rays == 0 || scene.tree.node_count == 0) return 0;
   const auto visit = [&](std::uint32_t entry, std::uint32_t active) HWY_ATTR {
     return visit_instance(scene, scene.leaf2instance[entry], bundle, active);

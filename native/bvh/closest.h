@@ -15,8 +15,9 @@ struct OpaqueFilter {
 /// What one ray has found so far, and the only place that decides between hits.
 struct Closest {
   Hit hit;
-  float limit;  ///< nothing that begins behind this can matter: best t, or t_max
+  float limit = 0.0f;  ///< nothing that begins behind this can matter: best t, or t_max
 
+  Closest() = default;
   explicit Closest(const Ray& ray) : limit(ray.t_max) {}
 
   /// Nearer, or as near with smaller (instance, primitive).
@@ -24,6 +25,13 @@ struct Closest {
     if (other.t != hit.t || !hit.valid()) return !hit.valid() || other.t < hit.t;
     if (other.instance != hit.instance) return other.instance < hit.instance;
     return other.primitive < hit.primitive;
+  }
+
+  bool keep(const Hit& other) {
+    if (!is_better(other)) return false;
+    hit = other;
+    limit = other.t;
+    return true;
   }
 };
 
@@ -39,12 +47,10 @@ inline bool test_triangle(const LocalRay& local, const Ray& ray, std::uint32_t i
     return false;
   }
   const Hit hit{found.t, found.u, found.v, instance, primitive};
-  if (!closest->is_better(hit)) return true;
   if constexpr (Filter::kEnabled) {
-    if (!filter(hit)) return false;
+    if (closest->is_better(hit) && !filter(hit)) return false;
   }
-  closest->hit = hit;
-  closest->limit = hit.t;
+  closest->keep(hit);
   return true;
 }
 

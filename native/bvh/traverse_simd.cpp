@@ -18,6 +18,7 @@
 #include "bvh/bundle_leaves-inl.h"
 #include "bvh/bundle_walk-inl.h"
 #include "bvh/bundle_sort-inl.h"
+#include "bvh/bundle_closest-inl.h"
 #include "bvh/kernel-inl.h"
 // clang-format on
 

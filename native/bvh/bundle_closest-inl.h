@@ -1,0 +1,161 @@
+// Closest hits of rays that follow each other, together: camera rays of neighbouring pixels meet
+// nearly the same nodes and leaves. Included once per instruction set by traverse_simd.cpp, without
+// a guard.
+
+HWY_BEFORE_NAMESPACE();
+namespace komorebi {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// What the rays of a bundle have found so far.
+struct Nearest {
+  Closest closest[kBundle];
+  HWY_ALIGN float limit[kBundle];  ///< Closest::limit
+
+  /// Rays for which what begins at `begin` can still matter.
+  HWY_INLINE std::uint32_t in_reach(float begin) const {
+    const RayTag d;
+    std::uint32_t rays = 0;
+    for (std::uint32_t i = 0; i < kBundle; i += kRayLanes) {
+      rays |= lane_bits(hn::Ge(hn::Load(d, limit + i), hn::Set(d, begin)), i);
+    }
+    return rays;
+  }
+};
+
+/// The ends of rays in one tree: of the part that matters there, or the closest hit before it.
+class Ends {
+ public:
+  HWY_INLINE Ends(const BundleSlab& slab, const Nearest& nearest) : slab_(slab), nearest_(nearest) {
+    const RayTag d;
+    for (std::uint32_t i = 0; i < kBundle; i += kRayLanes) {
+      const RayVec limit = hn::Neg(hn::Load(d, nearest.limit + i));
+      hn::Store(hn::Max(hn::Load(d, slab.minus_end + i), limit), d, minus_end_ + i);
+    }
+  }
+
+  HWY_INLINE const float* minus_end() const { return minus_end_; }
+
+  /// Ray i has found something nearer.
+  HWY_INLINE void update(std::uint32_t i) {
+    const float range = slab_.minus_end[i], limit = -nearest_.limit[i];
+    minus_end_[i] = range > limit ? range : limit;
+  }
+
+ private:
+  const BundleSlab& slab_;
+  const Nearest& nearest_;
+  HWY_ALIGN float minus_end_[kBundle];
+};
+
+/// Sends rays through a tree, near children first: `visit(leaf, rays)` returns those that found
+/// something nearer there.
+template <class Visit, class Address>
+HWY_INLINE void walk_closest(const TreeView& tree, const BundleSlab& slab, std::uint32_t rays,
+                             const Nearest& nearest, const Visit& visit, const Address& address) {
+  if (tree.node_count == 0 || rays == 0) return;
+  Ends ends(slab, nearest);
+  WalkingRays walking(slab, rays, ends.minus_end());
+  Waiting waiting;
+  visit_node<true>(tree.nodes[0], walking, rays, waiting);
+  while (waiting.size > 0) {
+    const std::uint32_t child = waiting.child[--waiting.size];
+    const std::uint32_t active =
+        waiting.rays[waiting.size] & nearest.in_reach(waiting.begin[waiting.size]);
+    if (waiting.size > 0) fetch_soon(address(waiting.child[waiting.size - 1]));
+    if (active == 0) continue;
+    if (child & Waiting::kLeaf) {
+      std::uint32_t found = visit(child & ~Waiting::kLeaf, active);
+      for (; found != 0; found &= found - 1) {
+        const auto i = static_cast<std::uint32_t>(__builtin_ctz(found));
+        ends.update(i);
+        walking.update_end(i);
+      }
+    } else {
+      visit_node<true>(tree.nodes[child], walking, active, waiting);
+    }
+  }
+}
+
+/// Rays of `bundle` that find something nearer in a mesh.
+HWY_INLINE std::uint32_t find_in_mesh(const MeshView& mesh, std::uint32_t instance,
+                                      const LocalBundle& bundle, std::uint32_t rays,
+                                      Nearest& nearest) {
+  std::uint32_t all_found = 0;
+  const auto visit = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
+    const OpenCluster cluster(mesh.clusters + std::size_t{leaf} * kClusterUnit);
+    std::uint32_t found = 0;
+    for (; active != 0; active &= active - 1) {
+      const auto i = static_cast<std::uint32_t>(__builtin_ctz(active));
+      if (!cluster.find_closest(bundle, i, instance, nearest.closest[i])) continue;
+      nearest.limit[i] = nearest.closest[i].limit;
+      found |= 1u << i;
+    }
+    all_found |= found;
+    return found;
+  };
+  const auto address = [&](std::uint32_t child) HWY_ATTR -> const void* {
+    const std::byte* leaf = mesh.clusters + std::size_t{child & ~Waiting::kLeaf} * kClusterUnit;
+    const void* node = mesh.tree.nodes + child;
+    return child & Waiting::kLeaf ? leaf : node;
+  };
+  while (rays != 0) {
+    const std::uint32_t now = same_octant(bundle.slab, rays);
+    walk_closest(mesh.tree, bundle.slab, now, nearest, visit, address);
+    rays &= ~now;
+  }
+  return all_found;
+}
+
+/// The closest hits of the first `count` rays of `bundle`.
+HWY_INLINE void intersect_together(const SceneView& scene, WorldBundle& bundle, std::uint32_t count,
+                                   Nearest& nearest) {
+  for (std::uint32_t i = 0; i < kBundle; ++i) {
+    const bool used = i < count;  // nothing is in reach of the others
+    nearest.closest[i].limit = nearest.limit[i] = used ? bundle.rays.t_max[i] : -kFloatMax;
+  }
+  std::uint32_t rays = prepare(bundle, count);
+  if (rays == 0 || scene.tree.node_count == 0) return;
+  const auto visit = [&](std::uint32_t entry, std::uint32_t active) HWY_ATTR {
+    const std::uint32_t index = scene.leaf2instance[entry];
+    const InstanceView& instance = scene.instances[index];
+    active = seeing(instance, bundle, active);
+    if (active == 0) return 0u;
+    LocalBundle local;
+    active = enter(instance, index, bundle, active, local);
+    return find_in_mesh(scene.meshes[instance.mesh], index, local, active, nearest);
+  };
+  const auto address = [&](std::uint32_t child) HWY_ATTR -> const void* {
+    return scene.tree.nodes + (child & Waiting::kLeaf ? 0 : child);
+  };
+  while (rays != 0) {
+    const std::uint32_t now = same_octant(bundle.slab, rays);
+    walk_closest(scene.tree, bundle.slab, now, nearest, visit, address);
+    rays &= ~now;
+  }
+}
+
+void intersect(const SceneView& scene, const RaySpan& rays, Hit* hits) {
+  for (std::uint32_t first = 0; first < rays.count; first += kBundle) {
+    const std::uint32_t now = rays.count - first < kBundle ? rays.count - first : kBundle;
+    WorldBundle bundle;
+    bundle.some_mask = 0;
+    bundle.common_mask = ~0u;
+    const std::uint32_t full = (now + kRayLanes - 1) / kRayLanes * kRayLanes;
+    for (std::uint32_t lane = 0; lane < full; ++lane) {  // unused places repeat the last ray
+      load_ray(rays, first + (lane < now ? lane : now - 1), 0, bundle, lane);
+      bundle.some_mask |= bundle.mask[lane];
+      bundle.common_mask &= bundle.mask[lane];
+    }
+    Nearest nearest;
+    intersect_together(scene, bundle, now, nearest);
+    for (std::uint32_t k = 0; k < now; ++k) hits[first + k] = nearest.closest[k].hit;
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace komorebi
+HWY_AFTER_NAMESPACE();
