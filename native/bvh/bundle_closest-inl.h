@@ -141,14 +141,13 @@ void intersect(const SceneView& scene, const RaySpan& rays, Hit* hits) {
   for (std::uint32_t first = 0; first < rays.count; first += kBundle) {
     const std::uint32_t now = rays.count - first < kBundle ? rays.count - first : kBundle;
     WorldBundle bundle;
-    bundle.some_mask = 0;
-    bundle.common_mask = ~0u;
-    const std::uint32_t full = (now + kRayLanes - 1) / kRayLanes * kRayLanes;
-    for (std::uint32_t lane = 0; lane < full; ++lane) {  // unused places repeat the last ray
-      load_ray(rays, first + (lane < now ? lane : now - 1), 0, bundle, lane);
-      bundle.some_mask |= bundle.mask[lane];
-      bundle.common_mask &= bundle.mask[lane];
+    for (std::uint32_t k = 0; k < now; k += kRayLanes) {
+      const RayIndexTag di;
+      const auto last = hn::Set(di, static_cast<std::int32_t>(first + now - 1));
+      const auto ray = hn::Min(hn::Iota(di, static_cast<std::int32_t>(first + k)), last);
+      load_rays(rays, Places{ray, ray}, bundle, k);  // what is behind the last ray repeats it
     }
+    join_masks(rays, bundle, now);
     Nearest nearest;
     intersect_together(scene, bundle, now, nearest);
     for (std::uint32_t k = 0; k < now; ++k) hits[first + k] = nearest.closest[k].hit;

@@ -10,71 +10,106 @@ namespace komorebi {
 namespace HWY_NAMESPACE {
 namespace {
 
+namespace hn = hwy::HWY_NAMESPACE;
+
 inline constexpr std::uint32_t kSorted = 1024;  ///< rays sorted at a time
 
 HWY_INLINE std::uint32_t octant(float x, float y, float z) {
   return (x < 0.0f ? 1u : 0u) | (y < 0.0f ? 2u : 0u) | (z < 0.0f ? 4u : 0u);
 }
 
-/// Ray `i` of `from` into place `k`.
-HWY_INLINE void load_ray(const RaySpan& from, std::uint32_t i, std::uint32_t, WorldBundle& to,
-                         std::uint32_t k) {
-  to.rays.o[0][k] = from.origin_x[i];
-  to.rays.o[1][k] = from.origin_y[i];
-  to.rays.o[2][k] = from.origin_z[i];
-  to.rays.d[0][k] = from.direction_x[i];
-  to.rays.d[1][k] = from.direction_y[i];
-  to.rays.d[2][k] = from.direction_z[i];
-  to.rays.t_min[k] = from.t_min[i];
-  to.rays.t_max[k] = from.t_max[i];
-  to.self_instance[k] = from.self_instance[i];
-  to.self_primitive[k] = from.self_primitive[i];
-  to.mask[k] = from.mask[i];
+/// Where kRayLanes rays come from: their numbers, and those of their points.
+struct Places {
+  hn::Vec<RayIndexTag> ray, point;
+};
+
+HWY_INLINE void fetch(const float* from, const hn::Vec<RayIndexTag>& at, float* to) {
+  hn::Store(hn::GatherIndex(RayTag(), from, at), RayTag(), to);
+}
+HWY_INLINE void fetch(const std::uint32_t* from, const hn::Vec<RayIndexTag>& at,
+                      std::uint32_t* to) {
+  const hn::RebindToUnsigned<RayTag> du;
+  hn::Store(hn::GatherIndex(du, from, at), du, to);
 }
 
-/// The same for a ray of point `p`.
-HWY_INLINE void load_ray(const RayBundles& from, std::uint32_t i, std::uint32_t p, WorldBundle& to,
-                         std::uint32_t k) {
-  to.rays.o[0][k] = from.origin_x[p];
-  to.rays.o[1][k] = from.origin_y[p];
-  to.rays.o[2][k] = from.origin_z[p];
-  to.rays.d[0][k] = from.direction_x[i];
-  to.rays.d[1][k] = from.direction_y[i];
-  to.rays.d[2][k] = from.direction_z[i];
-  to.rays.t_min[k] = 0.0f;
-  to.rays.t_max[k] = from.t_max[i];
-  to.self_instance[k] = from.self_instance[p];
-  to.self_primitive[k] = from.self_primitive[p];
-  to.mask[k] = from.mask;
+/// Into places k…k + kRayLanes − 1 of a bundle.
+HWY_INLINE void load_rays(const RaySpan& from, const Places& at, WorldBundle& to, std::uint32_t k) {
+  fetch(from.origin_x, at.ray, to.rays.o[0] + k);
+  fetch(from.origin_y, at.ray, to.rays.o[1] + k);
+  fetch(from.origin_z, at.ray, to.rays.o[2] + k);
+  fetch(from.direction_x, at.ray, to.rays.d[0] + k);
+  fetch(from.direction_y, at.ray, to.rays.d[1] + k);
+  fetch(from.direction_z, at.ray, to.rays.d[2] + k);
+  fetch(from.t_min, at.ray, to.rays.t_min + k);
+  fetch(from.t_max, at.ray, to.rays.t_max + k);
+  fetch(from.self_instance, at.ray, to.self_instance + k);
+  fetch(from.self_primitive, at.ray, to.self_primitive + k);
+  fetch(from.mask, at.ray, to.mask + k);
 }
 
-/// Rays first…first + count − 1, at most kSorted, of which ray first + k leaves point point[k];
+HWY_INLINE void load_rays(const RayBundles& from, const Places& at, WorldBundle& to,
+                          std::uint32_t k) {
+  fetch(from.origin_x, at.point, to.rays.o[0] + k);
+  fetch(from.origin_y, at.point, to.rays.o[1] + k);
+  fetch(from.origin_z, at.point, to.rays.o[2] + k);
+  fetch(from.direction_x, at.ray, to.rays.d[0] + k);
+  fetch(from.direction_y, at.ray, to.rays.d[1] + k);
+  fetch(from.direction_z, at.ray, to.rays.d[2] + k);
+  hn::Store(hn::Zero(RayTag()), RayTag(), to.rays.t_min + k);
+  fetch(from.t_max, at.ray, to.rays.t_max + k);
+  fetch(from.self_instance, at.point, to.self_instance + k);
+  fetch(from.self_primitive, at.point, to.self_primitive + k);
+  const hn::RebindToUnsigned<RayTag> du;
+  hn::Store(hn::Set(du, from.mask), du, to.mask + k);
+}
+
+/// Bits that any of a bundle's rays see by, and that all do.
+HWY_INLINE void join_masks(WorldBundle& bundle, std::uint32_t count) {
+  bundle.some_mask = 0;
+  bundle.common_mask = ~0u;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    bundle.some_mask |= bundle.mask[k];
+    bundle.common_mask &= bundle.mask[k];
+  }
+}
+HWY_INLINE void join_masks(const RaySpan&, WorldBundle& bundle, std::uint32_t count) {
+  join_masks(bundle, count);
+}
+HWY_INLINE void join_masks(const RayBundles& rays, WorldBundle& bundle, std::uint32_t) {
+  bundle.some_mask = bundle.common_mask = rays.mask;
+}
+
+/// Rays first…first + count − 1, at most kSorted, of which ray first + k leaves point[k];
 /// sets the bits of those that are blocked.
 template <class Rays>
 HWY_INLINE void occluded_sorted(const SceneView& scene, const Rays& rays, std::uint32_t first,
-                                std::uint32_t count, const std::uint32_t* point,
+                                std::uint32_t count, const std::int32_t* point,
                                 std::uint32_t* bits) {
   std::uint32_t size[8] = {};
-  std::uint16_t list[8][kSorted];
+  std::uint16_t list[8][kSorted + kRayLanes];
   for (std::uint32_t k = 0; k < count; ++k) {
     const std::uint32_t i = first + k;
     const auto o = octant(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]);
     list[o][size[o]++] = static_cast<std::uint16_t>(k);
   }
   for (std::uint32_t o = 0; o < 8; ++o) {
+    if (size[o] == 0) continue;
+    for (std::uint32_t k = 0; k < kRayLanes; ++k) {  // what is behind the last ray repeats it
+      list[o][size[o] + k] = list[o][size[o] - 1];
+    }
     for (std::uint32_t begin = 0; begin < size[o]; begin += kBundle) {
       const std::uint32_t now = size[o] - begin < kBundle ? size[o] - begin : kBundle;
       const std::uint16_t* const order = list[o] + begin;
       WorldBundle bundle;
-      bundle.some_mask = 0;
-      bundle.common_mask = ~0u;
-      const std::uint32_t full = (now + kRayLanes - 1) / kRayLanes * kRayLanes;
-      for (std::uint32_t lane = 0; lane < full; ++lane) {  // unused places repeat the last ray
-        const std::uint32_t k = order[lane < now ? lane : now - 1];
-        load_ray(rays, first + k, point[k], bundle, lane);
-        bundle.some_mask |= bundle.mask[lane];
-        bundle.common_mask &= bundle.mask[lane];
+      for (std::uint32_t k = 0; k < now; k += kRayLanes) {
+        const RayIndexTag di;
+        const hn::Rebind<std::uint16_t, RayTag> d16;
+        const auto place = hn::PromoteTo(di, hn::LoadU(d16, order + k));
+        const Places at = {hn::Add(place, hn::Set(di, static_cast<std::int32_t>(first))),
+                           hn::GatherIndex(di, point, place)};
+        load_rays(rays, at, bundle, k);
       }
+      join_masks(rays, bundle, now);
       for (std::uint32_t found = occluded_together(scene, bundle, now); found != 0;
            found &= found - 1) {
         const std::uint32_t i = first + order[__builtin_ctz(found)];
@@ -85,7 +120,7 @@ HWY_INLINE void occluded_sorted(const SceneView& scene, const Rays& rays, std::u
 }
 
 void occluded(const SceneView& scene, const RaySpan& rays, std::uint32_t* bits) {
-  const std::uint32_t none[kSorted] = {};
+  const std::int32_t none[kSorted] = {};
   for (std::uint32_t i = 0; i < (rays.count + 31) / 32; ++i) bits[i] = 0;
   for (std::uint32_t i = 0; i < rays.count; i += kSorted) {
     const std::uint32_t now = rays.count - i < kSorted ? rays.count - i : kSorted;
@@ -96,13 +131,13 @@ void occluded(const SceneView& scene, const RaySpan& rays, std::uint32_t* bits) 
 void occluded_bundles(const SceneView& scene, const RayBundles& bundles, std::uint32_t* bits) {
   const std::uint32_t count = bundles.ray_count();
   for (std::uint32_t i = 0; i < (count + 31) / 32; ++i) bits[i] = 0;
-  std::uint32_t point[kSorted];
+  std::int32_t point[kSorted];
   std::uint32_t p = 0;
   for (std::uint32_t i = 0; i < count; i += kSorted) {
     const std::uint32_t now = count - i < kSorted ? count - i : kSorted;
     for (std::uint32_t k = 0; k < now; ++k) {
       while (bundles.first_ray[p + 1] <= i + k) ++p;
-      point[k] = p;
+      point[k] = static_cast<std::int32_t>(p);
     }
     occluded_sorted(scene, bundles, i, now, point, bits);
   }
