@@ -92,10 +92,12 @@ def main() -> None:
     notes = open_file(job["file"])
     longest = max(job["width"], job["height"])
     common = {"frame": None, "view_layer": None, "flat": False, "samples": 1, "longest": longest}
-    scene, _layer, more = prepare({**common, **job})
+    scene, layer, more = prepare({**common, **job})
     settle_all(scene.render, resolution_x=job["width"], resolution_y=job["height"])
     if job["engine"] == "CYCLES":
         require(scene.cycles, **job["cycles"])
+        # Cycles asks its view layers too, and `prepare` has told them not to.
+        require(layer.cycles, use_denoising=scene.cycles.use_denoising)
     else:
         own_defaults(scene)
         require(scene.komorebi, **job["komorebi"])
