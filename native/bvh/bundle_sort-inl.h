@@ -47,8 +47,11 @@ HWY_INLINE void load_rays(const RaySpan& from, const Places& at, WorldBundle& to
   fetch(from.mask, at.ray, to.mask + k);
 }
 
-HWY_INLINE void load_rays(const RayBundles& from, const Places& at, WorldBundle& to,
-                          std::uint32_t k) {
+HWY_INLINE void load_rays(const RayBundles& from, Places at, WorldBundle& to, std::uint32_t k) {
+  if (from.place != nullptr) {
+    const hn::RebindToUnsigned<RayTag> du;
+    at.ray = hn::BitCast(RayIndexTag(), hn::GatherIndex(du, from.place, at.ray));
+  }
   fetch(from.origin_x, at.point, to.rays.o[0] + k);
   fetch(from.origin_y, at.point, to.rays.o[1] + k);
   fetch(from.origin_z, at.point, to.rays.o[2] + k);
@@ -61,6 +64,13 @@ HWY_INLINE void load_rays(const RayBundles& from, const Places& at, WorldBundle&
   fetch(from.self_primitive, at.point, to.self_primitive + k);
   const hn::RebindToUnsigned<RayTag> du;
   hn::Store(hn::Set(du, from.mask), du, to.mask + k);
+}
+
+HWY_INLINE std::uint32_t place_of(const RaySpan&, std::uint32_t i) {
+  return i;
+}
+HWY_INLINE std::uint32_t place_of(const RayBundles& rays, std::uint32_t i) {
+  return rays.place == nullptr ? i : rays.place[i];
 }
 
 /// Bits that any of a bundle's rays see by, and that all do.
@@ -89,7 +99,8 @@ HWY_INLINE void occluded_sorted(const SceneView& scene, const Rays& rays, std::u
   std::uint16_t list[8][kSorted + kRayLanes];
   for (std::uint32_t k = 0; k < count; ++k) {
     const std::uint32_t i = first + k;
-    const auto o = octant(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]);
+    const std::uint32_t at = place_of(rays, i);
+    const auto o = octant(rays.direction_x[at], rays.direction_y[at], rays.direction_z[at]);
     list[o][size[o]++] = static_cast<std::uint16_t>(k);
   }
   for (std::uint32_t o = 0; o < 8; ++o) {

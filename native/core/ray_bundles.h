@@ -13,6 +13,8 @@ struct RayBundles {
   const std::uint32_t* first_ray;  ///< [point_count + 1]; point p has rays first_ray[p]…[p + 1] − 1
   std::uint32_t point_count = 0;
   std::uint32_t mask = kMaskAll;
+  /// Where ray i's entries stand below, [ray_count]; null: at i.
+  const std::uint32_t* place = nullptr;
   // One entry a ray.
   const float *direction_x, *direction_y, *direction_z, *t_max;
 
@@ -20,10 +22,11 @@ struct RayBundles {
 
   /// Ray `i` of point `p`, as a single ray.
   Ray ray(std::uint32_t p, std::uint32_t i) const {
+    const std::uint32_t at = place == nullptr ? i : place[i];
     Ray ray;
     ray.origin = Vec3(origin_x[p], origin_y[p], origin_z[p]);
-    ray.direction = Vec3(direction_x[i], direction_y[i], direction_z[i]);
-    ray.t_max = t_max[i];
+    ray.direction = Vec3(direction_x[at], direction_y[at], direction_z[at]);
+    ray.t_max = t_max[at];
     ray.time = time[p];
     ray.mask = mask;
     ray.self_instance = self_instance[p];

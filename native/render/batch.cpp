@@ -10,8 +10,6 @@ namespace komorebi {
 namespace {
 
 constexpr std::size_t kPathsPerBatch = 4096;
-// Bounds what is traced between two looks at the cancel flag to a few milliseconds.
-constexpr std::uint32_t kLightRaysPerBatch = 8192;
 
 }  // namespace
 
@@ -63,7 +61,8 @@ void BatchIntegrator::shade() {
   surfaces_.clear(rays.count);
   for (std::uint32_t i = 0; i < rays.count; ++i) {
     if (hits_[i].valid()) {
-      surfaces_.push(i, pixels_[paths_[i].pixel].seed, paths_[i].sample * context_.light_samples);
+      surfaces_.push(i, hits_[i], rays.time[i], pixels_[paths_[i].pixel].seed,
+                     paths_[i].sample * context_.light_samples);
     } else {
       results_[i] =
           background(context_, Vec3(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]));
@@ -75,59 +74,48 @@ void BatchIntegrator::shade() {
   }
 }
 
-void BatchIntegrator::begin_light(std::uint32_t surface) {
-  const std::uint32_t path = surfaces_.path(surface);
-  light_rays_.begin_point(surfaces_.leaving_origin(surface), camera_rays_.span().time[path],
-                          hits_[path]);
-  light_owners_.push_back(path);
-}
-
 bool BatchIntegrator::light(const Cancel& cancel) {
-  for (std::uint32_t begin = 0; begin < surfaces_.size(); begin += light_block_.capacity()) {
-    const std::uint32_t end = std::min(surfaces_.size(), begin + light_block_.capacity());
-    if (!cast_block(begin, end, cancel)) return false;
+  const std::uint32_t size = light_block_.capacity();
+  for (std::uint32_t begin = 0; begin < surfaces_.size(); begin += size) {
+    if (cancel.raised()) return false;
+    cast_block(begin, std::min(surfaces_.size(), begin + size));
   }
-  flush_light();
   for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
     results_[surfaces_.path(s)].radiance /= static_cast<float>(context_.light_samples);
   }
   return !cancel.raised();
 }
 
-bool BatchIntegrator::cast_block(std::uint32_t begin, std::uint32_t end, const Cancel& cancel) {
+void BatchIntegrator::cast_block(std::uint32_t begin, std::uint32_t end) {
   light_block_.draw(context_, surfaces_.light_block(begin, end));
-  for (std::uint32_t s = begin; s < end; ++s) {
-    begin_light(s);
+  first_ray_.clear();
+  places_.clear();
+  for (std::uint32_t p = 0; p < end - begin; ++p) {
+    first_ray_.push_back(static_cast<std::uint32_t>(places_.size()));
     for (std::uint32_t j = 0; j < context_.light_samples; ++j) {
-      const Vec3 contribution = light_block_.contribution(s - begin, j);
-      if (contribution == Vec3(0.0f)) continue;
-      if (light_rays_.ray_count() == kLightRaysPerBatch) {
-        flush_light();
-        if (cancel.raised()) return false;
-        begin_light(s);
-      }
-      light_rays_.push_ray(light_block_.direction(s - begin, j), context_.light_distance);
-      contributions_.push_back(contribution);
+      const std::uint32_t place = light_block_.place(p, j);
+      if (light_block_.contribution(place) != Vec3(0.0f)) places_.push_back(place);
     }
   }
-  return true;
-}
+  first_ray_.push_back(static_cast<std::uint32_t>(places_.size()));
 
-void BatchIntegrator::flush_light() {
-  const RayBundles bundles = light_rays_.bundles(kMaskShadow);
-  occluded_bits_.resize((bundles.ray_count() + 31) / 32);
+  RayBundles bundles{};
+  surfaces_.lend(bundles, begin, end);
+  light_block_.lend(bundles, context_.light_distance);
+  bundles.first_ray = first_ray_.data();
+  bundles.place = places_.data();
+  bundles.mask = kMaskShadow;
+  occluded_bits_.resize((places_.size() + 31) / 32);
   occluded(context_.scene, bundles, occluded_bits_.data());
-  rays_ += bundles.ray_count();
-  for (std::uint32_t p = 0; p < bundles.point_count; ++p) {
-    Vec3& radiance = results_[light_owners_[p]].radiance;
-    for (std::uint32_t k = bundles.first_ray[p]; k < bundles.first_ray[p + 1]; ++k) {
+  rays_ += places_.size();
+  for (std::uint32_t p = 0; p < end - begin; ++p) {
+    Vec3& radiance = results_[surfaces_.path(begin + p)].radiance;
+    for (std::uint32_t k = first_ray_[p]; k < first_ray_[p + 1]; ++k) {
       // in the order drawn: sums are in floats
-      if (!((occluded_bits_[k / 32] >> (k % 32)) & 1u)) radiance += contributions_[k];
+      if ((occluded_bits_[k / 32] >> (k % 32)) & 1u) continue;
+      radiance += light_block_.contribution(places_[k]);
     }
   }
-  light_rays_.clear();
-  light_owners_.clear();
-  contributions_.clear();
 }
 
 bool BatchIntegrator::render(Cells cells, std::uint32_t first, std::uint32_t count,

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "parallel/cancel.h"
-#include "render/bundle_batch.h"
 #include "render/cells.h"
 #include "render/context.h"
 #include "render/film.h"
@@ -41,9 +40,7 @@ class BatchIntegrator {
   void start_camera_rays(std::uint32_t count);
   void shade();
   bool light(const Cancel& cancel);
-  bool cast_block(std::uint32_t begin, std::uint32_t end, const Cancel& cancel);
-  void begin_light(std::uint32_t surface);
-  void flush_light();
+  void cast_block(std::uint32_t begin, std::uint32_t end);
 
   RenderContext context_;
   std::vector<Pixel> pixels_;
@@ -54,9 +51,7 @@ class BatchIntegrator {
   SurfaceBatch surfaces_;
   std::vector<PixelSample> results_;
   LightBlockBuffer light_block_;
-  BundleBatch light_rays_;
-  std::vector<std::uint32_t> light_owners_;  // the path of each of their points
-  std::vector<Vec3> contributions_;          // of each light ray, if it arrives
+  std::vector<std::uint32_t> first_ray_, places_;  // of the light rays that are traced: RayBundles
   std::vector<std::uint32_t> occluded_bits_;
   std::uint64_t rays_ = 0;
 };

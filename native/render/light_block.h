@@ -1,20 +1,22 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
+#include "core/ray_bundles.h"
 #include "render/light_kernel.h"
 
 namespace komorebi {
 
-/// Owns what a LightBlock draws: the light rays of up to capacity() points, which stay in the first
-/// cache.
+/// Owns what a LightBlock draws: the light rays of up to capacity() points. They stay in the first
+/// caches, and the tracer sorts as many at a time.
 class LightBlockBuffer {
  public:
   explicit LightBlockBuffer(std::uint32_t rays_per_point)
       : rays_(rays_per_point),
-        capacity_((kRays / rays_per_point + LightBlock::kLanes) / LightBlock::kLanes *
-                  LightBlock::kLanes),
-        drawn_(std::size_t{6} * capacity_ * rays_) {}
+        capacity_(std::max(kRays / rays_per_point / LightBlock::kLanes, 1u) * LightBlock::kLanes),
+        drawn_(std::size_t{6} * capacity_ * rays_),
+        t_max_(std::size_t{capacity_} * rays_) {}
 
   std::uint32_t capacity() const { return capacity_; }
 
@@ -29,20 +31,35 @@ class LightBlockBuffer {
     sample_lights(context, block);
   }
 
-  Vec3 direction(std::uint32_t point, std::uint32_t ray) const { return entry(0, point, ray); }
-  Vec3 contribution(std::uint32_t point, std::uint32_t ray) const { return entry(3, point, ray); }
+  /// Where the entries of a point's ray stand, in RayBundles' words.
+  std::uint32_t place(std::uint32_t point, std::uint32_t ray) const {
+    return ray * capacity_ + point;
+  }
+  Vec3 direction(std::uint32_t place) const { return entry(0, place); }
+  Vec3 contribution(std::uint32_t place) const { return entry(3, place); }
+
+  /// Lends `bundles` the rays, all of them as long as `t_max`.
+  void lend(RayBundles& bundles, float t_max) {
+    if (t_max_.front() != t_max) std::fill(t_max_.begin(), t_max_.end(), t_max);
+    const std::size_t column = t_max_.size();
+    bundles.direction_x = drawn_.data();
+    bundles.direction_y = drawn_.data() + column;
+    bundles.direction_z = drawn_.data() + 2 * column;
+    bundles.t_max = t_max_.data();
+  }
 
  private:
   static constexpr std::uint32_t kRays = 1024;
 
-  Vec3 entry(std::size_t first, std::uint32_t point, std::uint32_t ray) const {
-    const std::size_t column = std::size_t{capacity_} * rays_;
-    const float* at = &drawn_[first * column + std::size_t{ray} * capacity_ + point];
+  Vec3 entry(std::size_t first, std::uint32_t place) const {
+    const std::size_t column = t_max_.size();
+    const float* at = &drawn_[first * column + place];
     return Vec3(at[0], at[column], at[2 * column]);
   }
 
   std::uint32_t rays_, capacity_;
   std::vector<float> drawn_;  // [6][rays][capacity]: direction, contribution
+  std::vector<float> t_max_;  // [rays][capacity]
 };
 
 }  // namespace komorebi

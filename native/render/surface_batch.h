@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/ray_bundles.h"
 #include "render/light_kernel.h"
 #include "render/surface_kernel.h"
 
@@ -15,7 +16,9 @@ class SurfaceBatch {
     count_ = 0;
     const std::size_t size = std::size_t{capacity} + kPadding;
     if (path_.size() >= size) return;
-    for (auto* column : {&path_, &pixel_seed_, &first_index_}) column->resize(size);
+    for (auto* column : {&path_, &pixel_seed_, &first_index_, &instance_, &primitive_}) {
+      column->resize(size);
+    }
     for (auto& column : floats_) column.resize(size);
   }
 
@@ -25,8 +28,12 @@ class SurfaceBatch {
   Vec3 normal(std::uint32_t i) const { return vector(0, i); }
   Vec3 leaving_origin(std::uint32_t i) const { return vector(6, i); }
 
-  void push(std::uint32_t path, std::uint32_t pixel_seed, std::uint32_t first_index) {
+  void push(std::uint32_t path, const Hit& hit, float time, std::uint32_t pixel_seed,
+            std::uint32_t first_index) {
     path_[count_] = path;
+    instance_[count_] = hit.instance;
+    primitive_[count_] = hit.primitive;
+    floats_[10][count_] = time;
     pixel_seed_[count_] = pixel_seed;
     first_index_[count_++] = first_index;
   }
@@ -45,6 +52,17 @@ class SurfaceBatch {
     }
     block.depth = floats_[9].data();
     surface_points(context, block);
+  }
+
+  /// Lends `bundles` points [begin, end), which their light rays leave.
+  void lend(RayBundles& bundles, std::uint32_t begin, std::uint32_t end) const {
+    bundles.point_count = end - begin;
+    bundles.origin_x = &floats_[6][begin];
+    bundles.origin_y = &floats_[7][begin];
+    bundles.origin_z = &floats_[8][begin];
+    bundles.time = &floats_[10][begin];
+    bundles.self_instance = &instance_[begin];
+    bundles.self_primitive = &primitive_[begin];
   }
 
   /// For the light rays of points [begin, end).
@@ -68,8 +86,8 @@ class SurfaceBatch {
   }
 
   std::uint32_t count_ = 0;
-  std::vector<std::uint32_t> path_, pixel_seed_, first_index_;
-  std::vector<float> floats_[10];  // normal, geometric normal, leaving origin, depth
+  std::vector<std::uint32_t> path_, pixel_seed_, first_index_, instance_, primitive_;
+  std::vector<float> floats_[11];  // normal, geometric normal, leaving origin, depth, time
 };
 
 }  // namespace komorebi

@@ -244,6 +244,34 @@ TEST(BundlesOfInstances, OfOneOfManyAndOfNone) {
   }
 }
 
+TEST(BundlesOfInstances, RaysMayStandAnywhere) {
+  TestScene scene;
+  const TriangleMesh mesh = sheet();
+  scene.add_mesh(mesh);
+  for (int i = 0; i < 3; ++i) scene.add_instance(0, Mat3d(1.0), Vec3(float(i)));
+  scene.commit();
+  const BundleList list = make_bundles(mesh, Aabb{Vec3(-1.0f), Vec3(3.0f)}, 10);
+  const RayBundles in_order = list.view();
+  std::vector<std::uint32_t> place(in_order.ray_count());
+  for (std::uint32_t i = 0; i < place.size(); ++i) place[i] = i;
+  std::shuffle(place.begin(), place.end(), std::mt19937(4));
+  std::vector<float> x(place.size()), y(place.size()), z(place.size()), t_max(place.size());
+  for (std::uint32_t i = 0; i < place.size(); ++i) {
+    x[place[i]] = in_order.direction_x[i];
+    y[place[i]] = in_order.direction_y[i];
+    z[place[i]] = in_order.direction_z[i];
+    t_max[place[i]] = in_order.t_max[i];
+  }
+  RayBundles shuffled = in_order;
+  shuffled.place = place.data();
+  shuffled.direction_x = x.data(), shuffled.direction_y = y.data();
+  shuffled.direction_z = z.data(), shuffled.t_max = t_max.data();
+  for (std::uint32_t i = 0; i < place.size(); ++i) {
+    ASSERT_EQ(shuffled.ray(0, i).direction, in_order.ray(0, i).direction);
+  }
+  EXPECT_EQ(expect_brute_force(scene.view(), shuffled), expect_brute_force(scene.view(), in_order));
+}
+
 TEST(BundlesOfInstances, NumbersThatAreNoneHitNothing) {
   TestScene scene;
   scene.add_mesh(sheet());

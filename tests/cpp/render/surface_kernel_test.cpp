@@ -56,7 +56,7 @@ TEST(SurfaceKernel, EqualsSurfacePoint) {
     surfaces.clear(rays.size());
     for (std::uint32_t i = 0; i < rays.size(); ++i) {
       if (!hits[i].valid()) continue;
-      surfaces.push(i, i, 3 * i);
+      surfaces.push(i, hits[i], 0.0f, i, 3 * i);
       ++hit_once[hits[i].instance];
     }
     surfaces.fill(context, hits.data(), rays.span());
