@@ -51,8 +51,8 @@ float cosine_weight(float cosine, float reach, float variance) {
   return largest > 0.0f ? weight : 0.0f;
 }
 
-/// Of the map's patch edge `column`, as a direction at height z.
-Vec3d edge_point(const EnvironmentView& map, std::uint32_t column, double z) {
+/// Of the map's patch edge `column`, or of a place between two, as a direction at height z.
+Vec3d edge_point(const EnvironmentView& map, double column, double z) {
   const auto [sin_phi, cos_phi] = sin_cos_turns(0.5 - (column + 0.5) / map.width);
   const double r = std::sqrt((1.0 - z) * (1.0 + z));
   return Vec3d(r * cos_phi, r * sin_phi, z);
@@ -99,8 +99,7 @@ void ProductTable::fill(const SkyVisibility* visibility, ThreadPool& pool) {
   if (visibility != nullptr) {
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const auto side = static_cast<std::uint32_t>(i / cells);
-      const float share = visibility->share(side, cells_.centre[i % cells]);
-      seen[i] = max_of(std::sqrt(share), kLeastSeen);
+      seen[i] = max_of(std::sqrt(greatest_share(*visibility, side, i % cells)), kLeastSeen);
     }
   }
   pool.for_each_chunk(std::size_t{bins_} * bins_, 32, [&](std::size_t begin, std::size_t end) {
@@ -159,6 +158,12 @@ void ProductTable::sum_cells(const EnvironmentView& map) {
         }
       }
       const double mean_cosine = has_centre ? std::min(1.0, length / energy) : 0.0;
+      for (const double x : {0.0, 0.5, 1.0}) {
+        for (const double y : {0.0, 0.5, 1.0}) {
+          cells.spread.push_back(
+              Vec3(edge_point(map, patch_column_[c] + x * patches, z0 + y * (z1 - z0))));
+        }
+      }
       cells.energy.push_back(energy);
       cells.solid_angle.push_back(patches * (z1 - z0));
       cells.centre.push_back(Vec3(centre));
@@ -174,6 +179,17 @@ void ProductTable::sum_cells(const EnvironmentView& map) {
       cells.energy[i] += kMeanShare * (energy / solid_angle) * cells.solid_angle[i];
     }
   }
+}
+
+/// A cell may be seen in part: what is seen most in it counts, else that part would have few rays
+/// of great weight.
+float ProductTable::greatest_share(const SkyVisibility& visibility, std::uint32_t side,
+                                   std::size_t cell) const {
+  float greatest = 0.0f;
+  for (std::size_t k = 0; k < kSpread; ++k) {
+    greatest = max_of(greatest, visibility.share(side, cells_.spread[cell * kSpread + k]));
+  }
+  return greatest;
 }
 
 void ProductTable::fill_bin(std::uint32_t bin, std::span<const float> seen) {

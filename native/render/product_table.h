@@ -30,10 +30,13 @@ class ProductTable {
     std::vector<double> energy;  ///< luminance times solid angle, to a common factor
     std::vector<double> solid_angle;
     std::vector<Vec3> centre;     ///< where its light comes from in the mean; unit length
+    std::vector<Vec3> spread;     ///< kSpread directions all over the cell, up to its corners
     std::vector<float> radius;    ///< bound of the angle from the centre to any point of the cell
     std::vector<float> variance;  ///< of the light's angle from the centre, on one axis
   };
+  static constexpr std::size_t kSpread = 9;
   void sum_cells(const EnvironmentView& map);
+  float greatest_share(const SkyVisibility& visibility, std::uint32_t side, std::size_t cell) const;
   void fill(const SkyVisibility* visibility, ThreadPool& pool);
   void fill_bin(std::uint32_t bin, std::span<const float> seen);
 
