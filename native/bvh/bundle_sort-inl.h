@@ -32,37 +32,34 @@ HWY_INLINE void fetch(const std::uint32_t* from, const hn::Vec<RayIndexTag>& at,
   hn::Store(hn::GatherIndex(du, from, at), du, to);
 }
 
-/// Into places k…k + kRayLanes − 1 of a bundle.
-HWY_INLINE void load_rays(const RaySpan& from, const Places& at, WorldBundle& to, std::uint32_t k) {
-  fetch(from.origin_x, at.ray, to.rays.o[0] + k);
-  fetch(from.origin_y, at.ray, to.rays.o[1] + k);
-  fetch(from.origin_z, at.ray, to.rays.o[2] + k);
-  fetch(from.direction_x, at.ray, to.rays.d[0] + k);
-  fetch(from.direction_y, at.ray, to.rays.d[1] + k);
-  fetch(from.direction_z, at.ray, to.rays.d[2] + k);
-  fetch(from.t_min, at.ray, to.rays.t_min + k);
-  fetch(from.t_max, at.ray, to.rays.t_max + k);
-  fetch(from.self_instance, at.ray, to.self_instance + k);
-  fetch(from.self_primitive, at.ray, to.self_primitive + k);
-  fetch(from.mask, at.ray, to.mask + k);
-}
-
-HWY_INLINE void load_rays(const RayBundles& from, Places at, WorldBundle& to, std::uint32_t k) {
-  if (from.place != nullptr) {
-    const hn::RebindToUnsigned<RayTag> du;
-    at.ray = hn::BitCast(RayIndexTag(), hn::GatherIndex(du, from.place, at.ray));
-  }
+/// What spans and bundles of rays both have; a ray of a span is its own point.
+template <class Rays>
+HWY_INLINE void load_shared(const Rays& from, const Places& at, WorldBundle& to, std::uint32_t k) {
   fetch(from.origin_x, at.point, to.rays.o[0] + k);
   fetch(from.origin_y, at.point, to.rays.o[1] + k);
   fetch(from.origin_z, at.point, to.rays.o[2] + k);
   fetch(from.direction_x, at.ray, to.rays.d[0] + k);
   fetch(from.direction_y, at.ray, to.rays.d[1] + k);
   fetch(from.direction_z, at.ray, to.rays.d[2] + k);
-  hn::Store(hn::Zero(RayTag()), RayTag(), to.rays.t_min + k);
   fetch(from.t_max, at.ray, to.rays.t_max + k);
   fetch(from.self_instance, at.point, to.self_instance + k);
   fetch(from.self_primitive, at.point, to.self_primitive + k);
+}
+
+/// Into places k…k + kRayLanes − 1 of a bundle.
+HWY_INLINE void load_rays(const RaySpan& from, const Places& at, WorldBundle& to, std::uint32_t k) {
+  load_shared(from, at, to, k);
+  fetch(from.t_min, at.ray, to.rays.t_min + k);
+  fetch(from.mask, at.ray, to.mask + k);
+}
+
+HWY_INLINE void load_rays(const RayBundles& from, Places at, WorldBundle& to, std::uint32_t k) {
   const hn::RebindToUnsigned<RayTag> du;
+  if (from.place != nullptr) {
+    at.ray = hn::BitCast(RayIndexTag(), hn::GatherIndex(du, from.place, at.ray));
+  }
+  load_shared(from, at, to, k);
+  hn::Store(hn::Zero(RayTag()), RayTag(), to.rays.t_min + k);
   hn::Store(hn::Set(du, from.mask), du, to.mask + k);
 }
 
@@ -131,11 +128,12 @@ HWY_INLINE void occluded_sorted(const SceneView& scene, const Rays& rays, std::u
 }
 
 void occluded(const SceneView& scene, const RaySpan& rays, std::uint32_t* bits) {
-  const std::int32_t none[kSorted] = {};
   for (std::uint32_t i = 0; i < (rays.count + 31) / 32; ++i) bits[i] = 0;
+  std::int32_t point[kSorted];
   for (std::uint32_t i = 0; i < rays.count; i += kSorted) {
     const std::uint32_t now = rays.count - i < kSorted ? rays.count - i : kSorted;
-    occluded_sorted(scene, rays, i, now, none, bits);
+    for (std::uint32_t k = 0; k < now; ++k) point[k] = static_cast<std::int32_t>(i + k);
+    occluded_sorted(scene, rays, i, now, point, bits);
   }
 }
 

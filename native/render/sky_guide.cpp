@@ -10,10 +10,11 @@ namespace {
 constexpr float kWorthwhile = 0.45f;
 
 /// A white map whose patches are the table's cells.
-std::unique_ptr<const Environment> white_sky() {
+const Environment& white_sky() {
   constexpr std::uint32_t kWidth = 64, kHeight = 31;
-  return std::make_unique<Environment>("white", kWidth, kHeight,
-                                       std::vector<float>(3 * kWidth * kHeight, 1.0f));
+  static const Environment sky("white", kWidth, kHeight,
+                               std::vector<float>(3 * kWidth * kHeight, 1.0f));
+  return sky;  // its tables are made once, not every frame
 }
 
 }  // namespace
@@ -30,10 +31,9 @@ void SkyGuide::prepare(const Scene& scene, ThreadPool& pool, const Cancel& cance
   done_ = true;
   if (ambient) {
     if (visibility.variance_left() > kWorthwhile) return;
-    white_ = white_sky();
-    context.sky = white_->view();
+    context.sky = white_sky().view();
   }
-  const Environment& map = ambient ? *white_ : *scene.world_environment();
+  const Environment& map = ambient ? white_sky() : *scene.world_environment();
   table_ = std::make_unique<ProductTable>(map.product_table(), visibility, pool);
   context.product = table_->view();
 }

@@ -20,7 +20,6 @@ class SkyGuide {
 
  private:
   bool done_ = false;
-  std::unique_ptr<const Environment> white_;
   std::unique_ptr<const ProductTable> table_;
 };
 

@@ -1,8 +1,6 @@
 #include "render/surface_kernel.h"
 
-#include <cstring>
-
-#include "bvh/traverse.h"
+#include "bvh/kernel.h"
 
 namespace komorebi {
 namespace {
@@ -24,10 +22,8 @@ void surface_points_scalar(const RenderContext& context, const SurfaceBlock& blo
 }  // namespace
 
 void surface_points(const RenderContext& context, const SurfaceBlock& block) {
-  const char* const name = active_instruction_set();
-  for (const SurfaceKernel* const* kernel = kSimdSurfaceKernels; *kernel != nullptr; ++kernel) {
-    if (std::strcmp((*kernel)->name, name) == 0) return (*kernel)->surface_points(context, block);
-  }
+  const int kernel = active_kernel_index();
+  if (kernel >= 0) return kSimdSurfaceKernels[kernel]->surface_points(context, block);
   surface_points_scalar(context, block);
 }
 

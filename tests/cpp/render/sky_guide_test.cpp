@@ -40,12 +40,15 @@ RenderContext context_of(const Scene& scene, Method method, const FilterTable& f
   return make_context(scene, settings, filter.view());
 }
 
-TEST(SkyVisibility, KnowsTheWindow) {
-  const auto scene = room_with_window();
+void measure(const Scene& scene, Method method, SkyVisibility& seen) {
   const FilterTable filter(PixelFilter::kBox, 1.0f);
-  const RenderContext context = context_of(*scene, Method::kWorldLight, filter);
-  SkyVisibility seen;
+  const RenderContext context = context_of(scene, method, filter);
   ASSERT_TRUE(measure_sky_visibility(context, shared_pool(), Cancel(), seen));
+}
+
+TEST(SkyVisibility, KnowsTheWindow) {
+  SkyVisibility seen;
+  ASSERT_NO_FATAL_FAILURE(measure(*room_with_window(), Method::kWorldLight, seen));
   const std::uint32_t up = SkyVisibility::side({0, 0, 1}), inwards = SkyVisibility::side({1, 0, 0});
   const Vec3 through = glm::normalize(Vec3(2, -0.1, 1.2));
   EXPECT_GT(seen.share(up, through), 0.15f);
@@ -56,11 +59,8 @@ TEST(SkyVisibility, KnowsTheWindow) {
 }
 
 TEST(SkyVisibility, OpenGroundSeesAll) {
-  const auto scene = open_ground();
-  const FilterTable filter(PixelFilter::kBox, 1.0f);
-  const RenderContext context = context_of(*scene, Method::kAmbientOcclusion, filter);
   SkyVisibility seen;
-  ASSERT_TRUE(measure_sky_visibility(context, shared_pool(), Cancel(), seen));
+  ASSERT_NO_FATAL_FAILURE(measure(*open_ground(), Method::kAmbientOcclusion, seen));
   const Vec3 up(0, 0, 1);
   EXPECT_GT(seen.share(SkyVisibility::side(up), up), 0.9f);
 }
