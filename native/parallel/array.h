@@ -6,15 +6,13 @@
 #include <utility>
 #include <vector>
 
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
+#include "parallel/pages.h"
 
 namespace komorebi {
 
 /// Allocates as std::allocator does, with two differences that a large array's filling feels:
 /// elements made without a value stay as they are (they are about to be written, by all threads),
-/// and large arrays ask the system for huge pages, where a fresh page is 512 times rarer.
+/// and large arrays come in huge pages, where a fresh page is 512 times rarer.
 template <class T>
 class ArrayAllocator {
  public:
@@ -27,15 +25,16 @@ class ArrayAllocator {
   T* allocate(std::size_t count) {
     if (count > static_cast<std::size_t>(-1) / sizeof(T)) throw std::bad_array_new_length();
     const std::size_t bytes = count * sizeof(T);
-    void* memory = ::operator new(bytes, alignment(count));
-#if defined(__linux__)
-    // Advice: where it is refused, the pages are small ones.
-    if (bytes >= kLarge) madvise(memory, bytes, MADV_HUGEPAGE);
-#endif
-    return static_cast<T*>(memory);
+    return static_cast<T*>(bytes >= kLarge ? map_pages(whole_huge_pages(bytes))
+                                           : ::operator new(bytes, kAlignment));
   }
   void deallocate(T* memory, std::size_t count) {
-    ::operator delete(memory, alignment(count));
+    const std::size_t bytes = count * sizeof(T);
+    if (bytes >= kLarge) {
+      unmap_pages(memory, whole_huge_pages(bytes));
+    } else {
+      ::operator delete(memory, kAlignment);
+    }
   }
 
   template <class U>
@@ -46,17 +45,11 @@ class ArrayAllocator {
   void construct(U* place, Arguments&&... arguments) {
     ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
   }
-  friend bool operator==(const ArrayAllocator&, const ArrayAllocator&) {
-    return true;
-  }
+  friend bool operator==(const ArrayAllocator&, const ArrayAllocator&) { return true; }
 
  private:
-  static constexpr std::size_t kHugePage = std::size_t{1} << 21;
   static constexpr std::size_t kLarge = 2 * kHugePage;  ///< bytes
-
-  static std::align_val_t alignment(std::size_t count) {
-    return std::align_val_t{count * sizeof(T) >= kLarge ? kHugePage : 64};
-  }
+  static constexpr std::align_val_t kAlignment{64};
 };
 
 /// A std::vector that `resize` does not fill: whoever resizes it writes every element.

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "parallel/pages.h"
 #include "parallel/thread_pool.h"
 
 namespace komorebi {
@@ -9,10 +10,9 @@ namespace komorebi {
 /// Lets the system put memory behind an array that nobody has written yet, each huge page by one
 /// worker. Where two workers write to a fresh page at the same time, both may clear one for it.
 inline void touch_pages(void* data, std::size_t bytes, ThreadPool& pool) {
-  constexpr std::size_t kPage = std::size_t{1} << 21;
-  if (bytes < 2 * kPage) return;
-  pool.for_each_chunk((bytes + kPage - 1) / kPage, 1, [&](std::size_t page, std::size_t) {
-    static_cast<volatile char*>(data)[page * kPage] = 0;
+  if (bytes < 2 * kHugePage) return;
+  pool.for_each_chunk((bytes + kHugePage - 1) / kHugePage, 1, [&](std::size_t page, std::size_t) {
+    static_cast<volatile char*>(data)[page * kHugePage] = 0;
   });
 }
 

@@ -5,14 +5,10 @@
 #include <new>
 #include <vector>
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
+#include "parallel/pages.h"
 
 namespace komorebi {
 namespace {
-
-constexpr std::size_t kPage = std::size_t{1} << 21;  ///< a huge page
 
 struct Block {
   void* data;
@@ -32,7 +28,11 @@ Kept& kept() {
 }
 
 void free_block(const Block& block) {
-  ::operator delete (block.data, std::align_val_t{block.capacity < kPage ? 64 : kPage});
+  if (block.capacity < kHugePage) {
+    ::operator delete (block.data, std::align_val_t{64});
+  } else {
+    unmap_pages(block.data, block.capacity);
+  }
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ void* borrow_scratch(std::size_t bytes, std::size_t* capacity) {
     // The smallest block that holds it without wasting more than half.
     auto best = pool.blocks.end();
     for (auto block = pool.blocks.begin(); block != pool.blocks.end(); ++block) {
-      if (block->capacity < bytes || block->capacity / 2 > bytes + kPage) continue;
+      if (block->capacity < bytes || block->capacity / 2 > bytes + kHugePage) continue;
       if (best == pool.blocks.end() || block->capacity < best->capacity) best = block;
     }
     if (best != pool.blocks.end()) {
@@ -55,16 +55,12 @@ void* borrow_scratch(std::size_t bytes, std::size_t* capacity) {
       return block.data;
     }
   }
-  if (bytes < kPage) {
+  if (bytes < kHugePage) {
     *capacity = std::max<std::size_t>(bytes, 64);
     return ::operator new (*capacity, std::align_val_t{64});
   }
-  *capacity = (bytes + kPage - 1) / kPage * kPage;
-  void* const data = ::operator new (*capacity, std::align_val_t{kPage});
-#ifdef __linux__
-  madvise(data, *capacity, MADV_HUGEPAGE);  // a hint: one fault for 512
-#endif
-  return data;
+  *capacity = whole_huge_pages(bytes);
+  return map_pages(*capacity);
 }
 
 void return_scratch(void* block, std::size_t capacity) {

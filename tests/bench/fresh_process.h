@@ -1,5 +1,6 @@
 #pragma once
 
+#include <malloc.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -14,7 +15,10 @@ namespace komorebi::bench {
 
 /// What `work` returns in a process of its own, forked from this one: memory that nobody has
 /// touched, threads that do not run yet. To be called while this process has no other thread.
+/// What it has freed goes back to the system first: the other process would reuse it, and with each
+/// first write to one of its pages pay for a copy of what nobody wants.
 inline std::vector<double> in_fresh_process(const std::function<std::vector<double>()>& work) {
+  malloc_trim(0);
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("no pipe");
   const pid_t child = fork();

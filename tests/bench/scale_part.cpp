@@ -9,12 +9,16 @@
 #include "bench/made_meshes.h"
 #include "bench/parts.h"
 #include "bench/ray_sets.h"
+#include "bench/touch_memory.h"
 #include "support/test_scene.h"
 
 namespace komorebi::bench {
 namespace {
 
 using testing::TestScene;
+
+/// Bytes a triangle or instance, more than mesh and tree take in the making.
+constexpr double kMostBytes = 256.0;
 
 /// Seconds of 16 ambient rays for each place that a view sees, median of three; and their number.
 std::pair<double, double> trace_ambient(const TestScene& scene, const Aabb& box, float reach,
@@ -102,12 +106,14 @@ void scale_part(const Options& options) {
   for (const std::string& builder : known_builders(options)) {
     for (const double wanted : options.numbers("triangles", "1e6,4e6,16e6,5e7")) {
       std::fprintf(stderr, "scale: %g triangles, %s\n", wanted, builder.c_str());
+      touch_free_memory(kMostBytes * wanted);
       print("triangles", builder,
             in_fresh_process([&] { return grow_triangles(wanted, builder, threads); }), threads);
     }
   }
   for (const double wanted : options.numbers("instances", "1,1e2,1e4,1e6")) {
     std::fprintf(stderr, "scale: %g instances\n", wanted);
+    touch_free_memory(kMostBytes * wanted);
     print("instances", "LINEAR", in_fresh_process([&] { return grow_instances(wanted, threads); }),
           threads);
   }

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+
+namespace komorebi {
+
+inline constexpr std::size_t kHugePage = std::size_t{1} << 21;  ///< bytes
+
+constexpr std::size_t whole_huge_pages(std::size_t bytes) {
+  return (bytes + kHugePage - 1) / kHugePage * kHugePage;
+}
+
+/// Memory from the system itself: fresh, in huge pages where it grants them, and given back as soon
+/// as it is unmapped. What malloc recycles is neither: its pages are small ones, and in a forked
+/// process the first write to each copies it.
+/// @param bytes  whole huge pages, more than none
+void* map_pages(std::size_t bytes);
+void unmap_pages(void* pages, std::size_t bytes);
+
+}  // namespace komorebi
