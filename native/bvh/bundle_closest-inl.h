@@ -59,7 +59,7 @@ HWY_INLINE void walk_closest(const TreeView& tree, const BundleSlab& slab, std::
   Ends ends(slab, nearest);
   WalkingRays walking(slab, rays, ends.minus_end());
   Waiting waiting;
-  visit_node<true>(tree.nodes[0], walking, rays, waiting);
+  visit_node<true>(tree.nodes[0], walking, nullptr, rays, waiting);
   while (waiting.size > 0) {
     const std::uint32_t child = waiting.child[--waiting.size];
     const std::uint32_t active =
@@ -74,7 +74,7 @@ HWY_INLINE void walk_closest(const TreeView& tree, const BundleSlab& slab, std::
         walking.update_end(i);
       }
     } else {
-      visit_node<true>(tree.nodes[child], walking, active, waiting);
+      visit_node<true>(tree.nodes[child], walking, nullptr, active, waiting);
     }
   }
 }

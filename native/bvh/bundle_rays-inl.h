@@ -43,6 +43,19 @@ HWY_INLINE std::uint32_t lane_bits(const Mask& mask, std::uint32_t first) {
          << first;
 }
 
+/// The lanes of bits that are set, as lane_bits(mask, 0) gives them.
+HWY_INLINE hn::Mask<RayTag> lanes_of(std::uint32_t bits) {
+  if constexpr (kRayLanes == 16) {
+    const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits),
+                                   static_cast<std::uint8_t>(bits >> 8)};
+    return hn::LoadMaskBits(RayTag(), bytes);
+  } else {
+    const RayIndexTag di;
+    const auto bit = hn::Shl(hn::Set(di, 1), hn::Iota(di, 0));
+    return hn::RebindMask(RayTag(), hn::TestBit(hn::Set(di, static_cast<std::int32_t>(bits)), bit));
+  }
+}
+
 HWY_INLINE RayVec largest_of(const RayVec& x, const RayVec& y, const RayVec& z) {
   return hn::Max(hn::Max(hn::Abs(x), hn::Abs(y)), hn::Abs(z));
 }

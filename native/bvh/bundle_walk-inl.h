@@ -14,12 +14,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// any.
 template <class Visit, class Address>
 HWY_INLINE std::uint32_t walk_bundle(const TreeView& tree, const WalkingRays& walking,
-                                     std::uint32_t rays, const Visit& visit,
+                                     const Reach* reach, std::uint32_t rays, const Visit& visit,
                                      const Address& address) {
   if (tree.node_count == 0 || rays == 0) return 0;
   Waiting waiting;
   std::uint32_t open = rays;
-  visit_node<false>(tree.nodes[0], walking, rays, waiting);
+  visit_node<false>(tree.nodes[0], walking, reach, rays, waiting);
   while (waiting.size > 0 && open != 0) {
     const std::uint32_t child = waiting.child[--waiting.size];
     const std::uint32_t active = waiting.rays[waiting.size] & open;
@@ -29,7 +29,7 @@ HWY_INLINE std::uint32_t walk_bundle(const TreeView& tree, const WalkingRays& wa
     if (child & Waiting::kLeaf) {
       open &= ~visit(child & ~Waiting::kLeaf, active);
     } else {
-      visit_node<false>(tree.nodes[child], walking, active, waiting);
+      visit_node<false>(tree.nodes[child], walking, reach, active, waiting);
     }
   }
   return rays & ~open;
@@ -55,7 +55,9 @@ HWY_INLINE std::uint32_t walk_mesh(const MeshView& mesh, const LocalBundle& bund
   std::uint32_t found = 0;
   while (rays != 0) {  // all at once unless the instance is turned
     const std::uint32_t now = same_octant(bundle.slab, rays);
-    found |= walk_bundle(mesh.tree, WalkingRays(bundle.slab, now), now, visit, address);
+    const WalkingRays walking(bundle.slab, now);
+    const Reach reach(walking, bundle.rays, now);
+    found |= walk_bundle(mesh.tree, walking, &reach, now, visit, address);
     rays &= ~now;
   }
   return found;
@@ -177,7 +179,7 @@ HWY_INLINE std::uint32_t occluded_together(const SceneView& scene, WorldBundle& 
   std::uint32_t found = 0;
   while (rays != 0) {  // all at once: those of a bundle point to one octant
     const std::uint32_t now = same_octant(bundle.slab, rays);
-    found |= walk_bundle(scene.tree, WalkingRays(bundle.slab, now), now, visit, address);
+    found |= walk_bundle(scene.tree, WalkingRays(bundle.slab, now), nullptr, now, visit, address);
     rays &= ~now;
   }
   return found;
