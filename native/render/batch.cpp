@@ -118,18 +118,13 @@ void BatchIntegrator::cast_block(std::uint32_t begin, std::uint32_t end) {
   }
 }
 
-bool BatchIntegrator::render(Cells cells, std::uint32_t first, std::uint32_t count,
-                             const Film& film, TileSums& sums, const Cancel& cancel) {
-  pixels_.clear();
-  for (const Rect& cell : cells) {
-    for (std::uint32_t y = cell.y_min; y < cell.y_max; ++y) {
-      for (std::uint32_t x = cell.x_min; x < cell.x_max; ++x) {
-        pixels_.push_back({x, y, Sampler(context_.seed, x, y).pixel_seed});
-      }
-    }
-  }
-  film.reset(sums, pixels_.size());
-  sums.samples = count;
+void BatchIntegrator::add_pixel(std::uint32_t x, std::uint32_t y) {
+  pixels_.push_back({x, y, Sampler(context_.seed, x, y).pixel_seed});
+}
+
+template <class Visit>
+bool BatchIntegrator::trace(std::uint32_t first, std::uint32_t count, const Cancel& cancel,
+                            const Visit& visit) {
   const std::size_t paths = pixels_.size() * count;  // all of one sample, then of the next
   for (std::size_t begin = 0; begin < paths; begin += kPathsPerBatch) {
     if (cancel.raised()) return false;
@@ -137,10 +132,36 @@ bool BatchIntegrator::render(Cells cells, std::uint32_t first, std::uint32_t cou
     shade();
     if (!light(cancel)) return false;
     for (std::size_t i = 0; i < paths_.size(); ++i) {
-      film.add(sums, paths_[i].pixel, paths_[i].sample, results_[i]);
+      visit(paths_[i].pixel, paths_[i].sample, results_[i]);
     }
   }
   return true;
+}
+
+bool BatchIntegrator::render(Cells cells, std::uint32_t first, std::uint32_t count,
+                             const Film& film, TileSums& sums, const Cancel& cancel) {
+  pixels_.clear();
+  for (const Rect& cell : cells) {
+    for (std::uint32_t y = cell.y_min; y < cell.y_max; ++y) {
+      for (std::uint32_t x = cell.x_min; x < cell.x_max; ++x) add_pixel(x, y);
+    }
+  }
+  film.reset(sums, pixels_.size());
+  sums.samples = count;
+  return trace(first, count, cancel,
+               [&](std::uint32_t pixel, std::uint32_t sample, const PixelSample& result) {
+                 film.add(sums, pixel, sample, result);
+               });
+}
+
+bool BatchIntegrator::sample(std::span<const PixelPlace> pixels, std::uint32_t count,
+                             Vec3* radiance, const Cancel& cancel) {
+  pixels_.clear();
+  for (const PixelPlace& pixel : pixels) add_pixel(pixel.x, pixel.y);
+  return trace(0, count, cancel,
+               [&](std::uint32_t pixel, std::uint32_t sample, const PixelSample& result) {
+                 radiance[std::size_t{pixel} * count + sample] = result.radiance;
+               });
 }
 
 }  // namespace komorebi

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "parallel/cancel.h"
 #include "render/cells.h"
 #include "render/context.h"
@@ -9,6 +12,11 @@
 #include "render/surface_batch.h"
 
 namespace komorebi {
+
+/// A pixel of the full frame.
+struct PixelPlace {
+  std::uint32_t x, y;
+};
 
 /// Renders cells in batches of some thousand paths, stage by stage: start → closest hits → light
 /// rays → occlusion → film. The arrays live as long as the object, one a thread.
@@ -21,6 +29,10 @@ class BatchIntegrator {
   /// False when cancelled on the way; the sums are then to be thrown away.
   bool render(Cells cells, std::uint32_t first, std::uint32_t count, const Film& film,
               TileSums& sums, const Cancel& cancel);
+
+  /// Samples [0, count) of single pixels, which nothing is added up of: radiance[p · count + s].
+  bool sample(std::span<const PixelPlace> pixels, std::uint32_t count, Vec3* radiance,
+              const Cancel& cancel);
 
   std::uint64_t ray_count() const { return rays_; }
 
@@ -36,6 +48,10 @@ class BatchIntegrator {
   enum { kColumnX, kColumnY, kColumnSample, kColumnSeed, kColumns };
   static constexpr std::uint32_t kPadding = 16;
 
+  void add_pixel(std::uint32_t x, std::uint32_t y);
+  /// Samples [first, first + count) of pixels_; visit(pixel, sample, result) is told each.
+  template <class Visit>
+  bool trace(std::uint32_t first, std::uint32_t count, const Cancel& cancel, const Visit& visit);
   void start(std::size_t begin, std::size_t end, std::uint32_t first);
   void start_camera_rays(std::uint32_t count);
   void shade();

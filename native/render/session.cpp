@@ -4,6 +4,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "render/light_samples.h"
 #include "render/tiles.h"
 
 namespace komorebi {
@@ -37,6 +38,7 @@ Session::Session(std::shared_ptr<const Scene> scene, const Settings& settings)
       settings_(checked(require_ready(scene_), settings)),
       filter_(settings_.pixel_filter, settings_.filter_width),
       context_(make_context(*scene_, settings_, filter_.view())),
+      light_samples_(context_.light_samples),
       rule_(settings_, context_.light_samples),
       pool_(settings_.threads),
       film_(film_region(*scene_, settings_), settings_, scene_->max_radiance()),
@@ -82,7 +84,7 @@ void Session::resume() {
 void Session::run() {
   std::string error;
   try {
-    guide_.prepare(*scene_, pool_, *cancel_, context_);
+    prepare();
     pool_.run(pool_.size(), [this](unsigned) { work(); });
   } catch (const std::bad_alloc&) {
     error = "out of memory while rendering";
@@ -94,6 +96,18 @@ void Session::run() {
   error_ = error;
   over_ = true;
   over_changed_.notify_all();
+}
+
+void Session::prepare() {
+  if (prepared_) return;
+  const Cancel& cancel = *cancel_;
+  guide_.prepare(*scene_, pool_, cancel, context_);
+  const std::uint32_t chosen = settings_.light_samples > 0
+                                   ? settings_.light_samples
+                                   : choose_light_samples(context_, pool_, cancel);
+  if (cancel.raised()) return;  // what is missing is done when resumed
+  light_samples_ = context_.light_samples = chosen;
+  prepared_ = true;
 }
 
 void Session::work() {

@@ -62,7 +62,8 @@ class Session {
   const Settings& settings() const { return settings_; }
   /// With what is automatic in the settings decided.
   const AdaptiveRule& adaptive_rule() const { return rule_; }
-  std::uint32_t light_samples() const { return context_.light_samples; }
+  /// What is automatic is known when the render has begun to sample.
+  std::uint32_t light_samples() const { return light_samples_; }
   /// Why the render failed; empty when it did not.
   std::string error() const;
   std::size_t byte_count() const { return film_.byte_count(); }
@@ -70,13 +71,16 @@ class Session {
  private:
   void launch();
   void run();
+  void prepare();
   void work();
 
   std::shared_ptr<const Scene> scene_;
   Settings settings_;
   FilterTable filter_;
   RenderContext context_;
-  SkyGuide guide_;  // what context_ draws light rays by
+  SkyGuide guide_;                            // what context_ draws light rays by
+  std::atomic<std::uint32_t> light_samples_;  // context_'s, for those who ask
+  bool prepared_ = false;                     // context_ is as the whole render takes it
   AdaptiveRule rule_;
   ThreadPool pool_;
   Film film_;

@@ -24,9 +24,9 @@ struct Rect {
 /// Films of up to as many samples have finer units than larger ones.
 inline constexpr std::uint32_t kManySamples = 1u << 16;
 
-/// Light rays per camera sample when the settings leave it open: those with which a picture is good
-/// soonest (figures in docs/performance.md). More of them share the camera ray, its hit point and
-/// the tracer's packets; fewer leave more camera samples, which edges need, and a map seen behind.
+/// Light rays per camera sample when the settings leave it open, or half as many
+/// (choose_light_samples): those with which a picture is good soonest. More than these leave too
+/// few camera samples to edges, and to a map seen behind.
 inline constexpr std::uint32_t kAutomaticLightSamples = 8;
 
 /// Everything about a render that is not in the scene. Names are those of `scene.komorebi`.
@@ -55,7 +55,7 @@ struct Settings {
   std::vector<std::string> passes{"Combined", "Depth", "Normal"};
 };
 
-/// Light rays that each camera sample casts.
+/// Light rays that each camera sample casts, at most.
 inline std::uint32_t resolved_light_samples(const Settings& settings) {
   return settings.light_samples > 0 ? settings.light_samples : kAutomaticLightSamples;
 }

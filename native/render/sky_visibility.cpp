@@ -8,6 +8,7 @@
 #include "core/warp.h"
 #include "render/bundle_batch.h"
 #include "render/one_ray.h"
+#include "render/pixel_grid.h"
 #include "render/ray_batch.h"
 
 namespace komorebi {
@@ -74,28 +75,22 @@ bool measure_sky_visibility(const RenderContext& given, ThreadPool& pool, const 
                             SkyVisibility& visibility) {
   RenderContext context = given;
   context.seed = 0;  // the same for all seeds
-  const double width = 2.0 * context.camera.film_center_x;
-  const double height = 2.0 * context.camera.film_center_y;
-  const double spacing = std::max(1.0, std::sqrt(width * height / kPoints));
-  const auto columns = static_cast<std::uint32_t>(std::max(1.0, width / spacing));
-  const auto rows = static_cast<std::uint32_t>(std::max(1.0, height / spacing));
-  const std::uint32_t per_point =
-      std::clamp(kRays / (columns * rows), kLeastRaysPerPoint, kMostRaysPerPoint);
+  const PixelGrid grid(context.camera, kPoints);
+  const std::uint32_t columns = grid.columns();
+  const std::uint32_t per_point = std::clamp(kRays / static_cast<std::uint32_t>(grid.size()),
+                                             kLeastRaysPerPoint, kMostRaysPerPoint);
   const Mat3& into_map = context.sky.texture_from_world;
-  pool.for_each_chunk(rows, 1, [&](std::size_t begin, std::size_t end) {
+  pool.for_each_chunk(grid.rows(), 1, [&](std::size_t begin, std::size_t end) {
     RayBatch camera_rays;
     BundleBatch batch;
     std::vector<Hit> hits;
     std::vector<std::uint32_t> bits;
     std::vector<Vec3> normals;
     for (std::size_t row = begin; row < end && !cancel.raised(); ++row) {
-      const auto y = static_cast<std::uint32_t>((static_cast<double>(row) + 0.5) / rows * height);
-      const auto x_of = [&](std::uint32_t column) {
-        return static_cast<std::uint32_t>((column + 0.5) / columns * width);
-      };
+      const std::uint32_t y = grid.y(static_cast<std::uint32_t>(row));
       camera_rays.clear();
       for (std::uint32_t column = 0; column < columns; ++column) {
-        camera_rays.push(start_ray(context, x_of(column), y, 0));
+        camera_rays.push(start_ray(context, grid.x(column), y, 0));
       }
       hits.resize(columns);
       intersect(context.scene, camera_rays.span(), hits.data());
@@ -109,7 +104,7 @@ bool measure_sky_visibility(const RenderContext& given, ThreadPool& pool, const 
         batch.begin_point(leaving_origin(point), ray.time, hit);
         normals.push_back(into_map * point.normal);
         const Frame frame = make_frame(point.normal);
-        const Sampler sampler(context.seed, x_of(column), y);
+        const Sampler sampler(context.seed, grid.x(column), y);
         for (std::uint32_t i = 0; i < per_point; ++i) {
           const Vec2 u = sampler.sample_2d(vertex_dimension(0, kVertexLightDirection), i);
           batch.push_ray(frame.to_world(cosine_hemisphere_disk(u)), context.light_distance);
