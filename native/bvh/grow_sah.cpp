@@ -83,17 +83,13 @@ class SahBuilder {
     cluster_count_ = next;
     ids_ = Scratch<std::uint32_t>(cluster_count_);
     moved_ = Scratch<std::uint32_t>(cluster_count_);
-    bin_ = Scratch<std::uint32_t>(cluster_count_);
     std::uint32_t at = 0;
     for (std::size_t i = 0; i < base.size(); ++i) {
       for (std::uint32_t k = 0; k < count[i]; ++k) ids_[at++] = base[i] + k;
     }
   }
 
-  Clusters clusters() {
-    return {cluster_.data(), ids_.data(), moved_.data(),
-            reinterpret_cast<std::uint8_t(*)[4]>(bin_.data())};
-  }
+  Clusters clusters() { return {cluster_.data(), ids_.data(), moved_.data()}; }
 
   void split_top() {
     treelets_ = Scratch<ClusterRange>(cluster_count_);
@@ -122,9 +118,11 @@ class SahBuilder {
       const std::uint32_t treelet = treelet_count_.fetch_add(1);
       treelets_[treelet] = part.range;
       grove_.mark_treelet(part.node, treelet);
+      WideBox box;
+      kernel_.bound(clusters(), part.range, &box);
       for (int axis = 0; axis < 3; ++axis) {
-        grove_.node(part.node).lo[axis] = part.range.box.v[axis];
-        grove_.node(part.node).minus_hi[axis] = part.range.box.v[4 + axis];
+        grove_.node(part.node).lo[axis] = box.v[axis];
+        grove_.node(part.node).minus_hi[axis] = box.v[4 + axis];
       }
       return;
     }
@@ -171,7 +169,7 @@ class SahBuilder {
   Scratch<std::uint32_t> sorted_;  ///< items along the curve
   Scratch<BinaryNode> cluster_;    ///< first and info: a run of sorted_
   std::uint32_t cluster_count_ = 0;
-  Scratch<std::uint32_t> ids_, moved_, bin_;
+  Scratch<std::uint32_t> ids_, moved_;
   Scratch<ClusterRange> treelets_;
   std::atomic<std::uint32_t> treelet_count_{0};
 };

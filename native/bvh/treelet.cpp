@@ -20,6 +20,8 @@
 #include "bvh/leaf-inl.h"
 #include "bvh/treelet_load-inl.h"
 #include "bvh/treelet_linear-inl.h"
+#include "bvh/treelet_bins-inl.h"
+#include "bvh/treelet_few-inl.h"
 #include "bvh/treelet_sah-inl.h"
 #include "bvh/plan-inl.h"
 #include "bvh/quantise-inl.h"
@@ -38,6 +40,7 @@ const BuildKernel kBuildKernel = {&HWY_STR(HWY_NAMESPACE)[2],  // N_AVX2: "AVX2"
                                   &sah,
                                   &measure,
                                   &split,
+                                  &bound,
                                   &quantise_children,
                                   &emit_treelet,
                                   &emit_tree};

@@ -38,7 +38,6 @@ struct Treelet {
   std::uint32_t ids[kTreeletSize];                    ///< position → local index
   std::uint32_t code[kTreeletSize + kCodesBehind];
   std::uint32_t moved[kTreeletSize];
-  std::uint8_t bin[kTreeletSize][4];
   BinaryNode nodes[2 * kTreeletSize];  ///< local: children and leaf positions from 0
   PlanCost cost[2 * kTreeletSize];
 };
@@ -68,18 +67,16 @@ inline bool is_treelet(const BinaryNode& node) {
 
 /// Runs of items as they stand in Morton order, which a top tree parts as a whole.
 struct Clusters {
-  BinaryNode* cluster;     ///< box; first, info: run of sorted items
-  std::uint32_t* ids;      ///< position → cluster
-  std::uint32_t* moved;    ///< scratch of the same length
-  std::uint8_t (*bin)[4];  ///< scratch of the same length
+  BinaryNode* cluster;   ///< box; first, info: run of sorted items
+  std::uint32_t* ids;    ///< position → cluster
+  std::uint32_t* moved;  ///< scratch of the same length
 };
 
 /// A range of Clusters::ids, with what is known of it.
 struct ClusterRange {
   std::uint32_t begin, end;
   std::uint32_t items;  ///< in all its clusters
-  WideBox box;
-  WideBox centres;  ///< of the centres
+  WideBox centres;      ///< bounds of the centres
 };
 
 /// The inner loops of the builders, compiled for one instruction set. They give the same tree in
@@ -96,11 +93,13 @@ struct BuildKernel {
   void (*linear)(LeafLimit limit, float largest_leaf, Treelet& treelet);
   /// Builds by the surface-area heuristic. `scale`: 1 / a length typical of the tree.
   void (*sah)(LeafLimit limit, float scale, Treelet& treelet);
-  /// Box and centres of a range.
+  /// Items and centres of a range.
   void (*measure)(const Clusters& clusters, ClusterRange& range);
   /// Parts a range by the surface-area heuristic, or in halves; both parts are not empty.
   void (*split)(const Clusters& clusters, float scale, bool in_halves, const ClusterRange& range,
                 ClusterRange* left, ClusterRange* right);
+  /// The box of a range.
+  void (*bound)(const Clusters& clusters, const ClusterRange& range, WideBox* box);
   /// Boxes of a wide node's children onto its grid (bvh/quantise.h).
   void (*quantise)(const BinaryNode* nodes, const std::uint32_t* children, int count,
                    WideNode& wide);

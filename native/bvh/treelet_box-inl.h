@@ -34,8 +34,9 @@ HWY_INLINE Vector4 minus_high(Lanes box) {
 HWY_INLINE Lanes make_box(Vector4 lo, Vector4 minus_hi) {
   return hn::Combine(Float8(), minus_hi, lo);
 }
-HWY_INLINE Lanes choose(bool first, Lanes a, Lanes b) {
-  const auto bits = hn::Set(hn::RebindToSigned<Float8>(), first ? -1 : 0);
+/// The first for 1, the second for 0.
+HWY_INLINE Lanes choose(std::uint32_t first, Lanes a, Lanes b) {
+  const auto bits = hn::Set(hn::RebindToUnsigned<Float8>(), 0u - first);
   return hn::IfThenElse(hn::MaskFromVec(hn::BitCast(Float8(), bits)), a, b);
 }
 #else
@@ -62,8 +63,8 @@ HWY_INLINE Vector4 minus_high(Lanes box) {
 HWY_INLINE Lanes make_box(Vector4 lo, Vector4 minus_hi) {
   return {lo, minus_hi};
 }
-HWY_INLINE Lanes choose(bool first, Lanes a, Lanes b) {
-  const auto bits = hn::Set(hn::RebindToSigned<Float4>(), first ? -1 : 0);
+HWY_INLINE Lanes choose(std::uint32_t first, Lanes a, Lanes b) {
+  const auto bits = hn::Set(hn::RebindToUnsigned<Float4>(), 0u - first);
   const auto mask = hn::MaskFromVec(hn::BitCast(Float4(), bits));
   return {hn::IfThenElse(mask, a.lo, b.lo), hn::IfThenElse(mask, a.minus_hi, b.minus_hi)};
 }

@@ -1,5 +1,5 @@
-// Splits by the surface-area heuristic, binned (Wald 2007), of items on the desk and of clusters.
-// Included once per instruction set (no include guard).
+// A treelet by the surface-area heuristic, and what parts clusters above it. Included once per
+// instruction set (no include guard).
 
 HWY_BEFORE_NAMESPACE();
 namespace komorebi {
@@ -9,198 +9,10 @@ namespace {
 /// Deepest level of a treelet that is split by area; from there on halves, ten levels at most.
 constexpr std::uint32_t kTreeletMedianDepth = 28;
 
-/// Positions [begin, end) of a list of ids, the boxes that they stand for, and room to work.
-struct ItemList {
-  const Treelet& t;
-  std::uint32_t* ids;
-  std::uint32_t* moved;
-  std::uint8_t (*bin)[4];
-  HWY_INLINE Lanes box(std::uint32_t id) const { return load_box(t.box[id].v); }
-  HWY_INLINE void fetch(std::uint32_t, std::uint32_t) const {}  // in the cache
-  HWY_INLINE std::uint32_t weight(std::uint32_t) const { return 1; }
-};
-
-struct ClusterList {
-  const BinaryNode* cluster;
-  std::uint32_t* ids;
-  std::uint32_t* moved;
-  std::uint8_t (*bin)[4];
-  HWY_INLINE Lanes box(std::uint32_t id) const { return node_box(cluster[id]); }
-  HWY_INLINE void fetch(std::uint32_t i, std::uint32_t end) const {
-    if (i + kAhead < end) hwy::Prefetch(&cluster[ids[i + kAhead]]);
-  }
-  HWY_INLINE std::uint32_t weight(std::uint32_t id) const { return cluster[id].info; }
-  static constexpr std::uint32_t kAhead = 16;
-};
-
-struct Range {
-  std::uint32_t begin, end;
-  std::uint32_t items;
-  Lanes box, centres;
-};
-
-template <class List>
-Range measure_range(const List& list, std::uint32_t begin, std::uint32_t end) {
-  Range range{begin, end, 0, empty_lanes(), empty_lanes()};
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const Lanes box = list.box(list.ids[i]);
-    range.box = merge(range.box, box);
-    range.centres = merge(range.centres, point_box(centre_of(box)));
-    range.items += list.weight(list.ids[i]);
-  }
-  return range;
-}
-
-/// Halves by position: what is left where no plane parts the centres.
-template <class List>
-void split_in_halves(const List& list, const Range& range, Range* left, Range* right) {
-  const std::uint32_t middle = range.begin + (range.end - range.begin) / 2;
-  *left = measure_range(list, range.begin, middle);
-  *right = measure_range(list, middle, range.end);
-}
-
-constexpr int kBinBits = 4, kMostBins = 1 << kBinBits;
-/// Keeps the last centre in the last bin.
-constexpr float kInside = 0.9999f / kMostBins;
-
-struct Bins {
-  alignas(32) float box[3][kMostBins][8];
-  std::uint32_t items[3][kMostBins];
-};
-
-struct Plane {
-  int axis = -1;
-  std::uint32_t bin = 0;  ///< first bin on the right
-};
-
-/// Counted with the items of a side: what a leaf costs beside what is in it.
-constexpr float kLeafItems = 4.0f;
-
-/// The cheapest plane between bins: area × (items + kLeafItems) on both sides.
-HWY_INLINE Plane cheapest_plane(const Bins& bins, const float* side, int count, float scale) {
-  Plane plane;
-  float best = kFloatMax;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(side[axis] > 0.0f)) continue;
-    float right_cost[kMostBins];
-    Lanes right = empty_lanes();
-    std::uint32_t items = 0;
-    for (int k = count - 1; k > 0; --k) {
-      right = merge(right, load_box(bins.box[axis][k]));
-      items += bins.items[axis][k];
-      right_cost[k] =
-          items > 0 ? area_of(right, scale) * (static_cast<float>(items) + kLeafItems) : kFloatMax;
-    }
-    Lanes left = empty_lanes();
-    items = 0;
-    for (int k = 1; k < count; ++k) {
-      left = merge(left, load_box(bins.box[axis][k - 1]));
-      items += bins.items[axis][k - 1];
-      if (items == 0) continue;
-      const float cost =
-          area_of(left, scale) * (static_cast<float>(items) + kLeafItems) + right_cost[k];
-      if (cost < best) {
-        best = cost;
-        plane.axis = axis;
-        plane.bin = static_cast<std::uint32_t>(k);
-      }
-    }
-  }
-  return plane;
-}
-
-template <class List>
-HWY_INLINE void split_range(const List& list, float scale, const Range& range, Range* left,
-                            Range* right) {
-  const std::uint32_t length = range.end - range.begin;
-  const int count = length > 64 ? 16 : 8;
-  const auto start = low(range.centres);
-  alignas(16) float side[4];
-  alignas(16) float factor[4];
-  hn::Store(hn::Neg(hn::Add(start, minus_high(range.centres))), Float4(), side);
-  bool any = false;
-  for (int axis = 0; axis < 3; ++axis) {
-    // Sides of which the reciprocal or the product overflows do not take part.
-    if (!(side[axis] > 1e-36f && side[axis] < kFloatMax)) side[axis] = 0.0f;
-    factor[axis] = side[axis] > 0.0f ? static_cast<float>(count) * kInside / side[axis] : 0.0f;
-    any = any || side[axis] > 0.0f;
-  }
-  factor[3] = 0.0f;
-  if (!any) return split_in_halves(list, range, left, right);
-
-  Bins bins;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int k = 0; k < count; ++k) {
-      store_box(empty_lanes(), bins.box[axis][k]);
-      bins.items[axis][k] = 0;
-    }
-  }
-  const auto factors = hn::Load(Float4(), factor);
-  const hn::FixedTag<std::uint32_t, 4> du;
-  const auto put_into_bins = [&](std::uint32_t i) {
-    const std::uint32_t id = list.ids[i];
-    const Lanes box = list.box(id);
-    // In [1, 2): the highest bits of the mantissa are the bin.
-    const auto cell = hn::Mul(hn::Sub(centre_of(box), start), factors);
-    const auto bits = hn::BitCast(du, hn::Add(cell, hn::Set(Float4(), 1.0f)));
-    const auto bin = hn::And(hn::ShiftRight<23 - kBinBits>(bits), hn::Set(du, kMostBins - 1u));
-    const auto bytes = hn::U8FromU32(bin);
-    std::uint32_t packed = hn::GetLane(hn::BitCast(hn::FixedTag<std::uint32_t, 1>(), bytes));
-    std::memcpy(list.bin[i], &packed, 4);
-    const std::uint32_t weight = list.weight(id);
-    for (int axis = 0; axis < 3; ++axis, packed >>= 8) {
-      float* const sum = bins.box[axis][packed & 255u];
-      store_box(merge(load_box(sum), box), sum);
-      bins.items[axis][packed & 255u] += weight;
-    }
-  };
-  // Neighbours are often in the same bins and would wait for each other: so from four places.
-  const std::uint32_t part = length / 4;
-  for (std::uint32_t i = 0; i < part; ++i) {
-    for (std::uint32_t from = range.begin; from < range.begin + 4 * part; from += part) {
-      list.fetch(from + i, from + part);
-      put_into_bins(from + i);
-    }
-  }
-  for (std::uint32_t i = range.begin + 4 * part; i < range.end; ++i) put_into_bins(i);
-  const Plane plane = cheapest_plane(bins, side, count, scale);
-  if (plane.axis < 0) return split_in_halves(list, range, left, right);
-
-  // Parted without a branch that nobody could predict: every id is written to both sides.
-  Lanes left_centres = empty_lanes(), right_centres = left_centres;
-  const Lanes nothing = left_centres;
-  std::uint32_t to_left = range.begin, to_right = 0;
-  std::uint32_t* const moved = list.moved + range.begin;
-  for (std::uint32_t i = range.begin; i < range.end; ++i) {
-    list.fetch(i, range.end);
-    const std::uint32_t id = list.ids[i];
-    const bool is_right = list.bin[i][plane.axis] >= plane.bin;
-    const Lanes centre = point_box(centre_of(list.box(id)));
-    left_centres = merge(left_centres, choose(is_right, nothing, centre));
-    right_centres = merge(right_centres, choose(is_right, centre, nothing));
-    list.ids[to_left] = id;
-    moved[to_right] = id;
-    to_left += is_right ? 0 : 1;
-    to_right += is_right ? 1 : 0;
-  }
-  for (std::uint32_t k = 0; k < to_right; ++k) list.ids[to_left + k] = moved[k];
-
-  *left = Range{range.begin, to_left, 0, empty_lanes(), left_centres};
-  *right = Range{to_left, range.end, 0, empty_lanes(), right_centres};
-  for (std::uint32_t k = 0; k < plane.bin; ++k) {
-    left->box = merge(left->box, load_box(bins.box[plane.axis][k]));
-    left->items += bins.items[plane.axis][k];
-  }
-  for (std::uint32_t k = plane.bin; k < static_cast<std::uint32_t>(count); ++k) {
-    right->box = merge(right->box, load_box(bins.box[plane.axis][k]));
-  }
-  right->items = range.items - left->items;
-}
-
 class SahTreelet {
  public:
   SahTreelet(LeafLimit limit, float scale, Treelet& t)
-      : limit_(limit), scale_(scale), t_(t), list_{t, t.ids, t.moved, t.bin} {}
+      : limit_(limit), scale_(scale), t_(t), list_{t, t.ids, t.moved} {}
 
   void build() {
     t_.node_count = 1;
@@ -209,19 +21,23 @@ class SahTreelet {
 
  private:
   void add(std::uint32_t index, std::uint32_t depth, const Range& range) {
+    const std::uint32_t count = range.end - range.begin;
     if (const std::uint32_t info = leaf_info(t_, range.begin, range.end, limit_); info != 0) {
-      write_node(t_.nodes[index], range.box, range.begin, info);
+      write_node(t_.nodes[index], box_of_run(t_, range.begin, range.end), range.begin, info);
       return;
     }
     Range left, right;
-    if (depth < kTreeletMedianDepth) {
-      split_range(list_, scale_, range, &left, &right);
-    } else {
+    if (depth >= kTreeletMedianDepth) {
       split_in_halves(list_, range, &left, &right);
+    } else if (count <= kFewItems) {
+      split_few(t_, scale_, range, &left, &right);
+    } else {
+      split_range(list_, scale_, range, &left, &right);
     }
     const std::uint32_t child = t_.node_count;
     t_.node_count += 2;
-    write_node(t_.nodes[index], range.box, child, kInnerBit);
+    t_.nodes[index].first = child;
+    t_.nodes[index].info = kInnerBit;
     add(child, depth + 1, left);
     add(child + 1, depth + 1, right);
   }
@@ -237,14 +53,13 @@ void sah(LeafLimit limit, float scale, Treelet& treelet) {
 }
 
 ClusterList list_of(const Clusters& clusters) {
-  return {clusters.cluster, clusters.ids, clusters.moved, clusters.bin};
+  return {clusters.cluster, clusters.ids, clusters.moved};
 }
 
 void store_range(const Range& range, ClusterRange* to) {
   to->begin = range.begin;
   to->end = range.end;
   to->items = range.items;
-  store_box(range.box, to->box.v);
   store_box(range.centres, to->centres.v);
 }
 
@@ -254,8 +69,7 @@ void measure(const Clusters& clusters, ClusterRange& range) {
 
 void split(const Clusters& clusters, float scale, bool in_halves, const ClusterRange& range,
            ClusterRange* left, ClusterRange* right) {
-  const Range whole{range.begin, range.end, range.items, load_box(range.box.v),
-                    load_box(range.centres.v)};
+  const Range whole{range.begin, range.end, range.items, load_box(range.centres.v)};
   Range parts[2];
   if (in_halves) {
     split_in_halves(list_of(clusters), whole, &parts[0], &parts[1]);
@@ -264,6 +78,14 @@ void split(const Clusters& clusters, float scale, bool in_halves, const ClusterR
   }
   store_range(parts[0], left);
   store_range(parts[1], right);
+}
+
+void bound(const Clusters& clusters, const ClusterRange& range, WideBox* box) {
+  Lanes all = empty_lanes();
+  for (std::uint32_t i = range.begin; i < range.end; ++i) {
+    all = merge(all, node_box(clusters.cluster[clusters.ids[i]]));
+  }
+  store_box(all, box->v);
 }
 
 }  // namespace
