@@ -39,7 +39,11 @@ HWY_INLINE std::uint32_t walk_bundle(const TreeView& tree, const WalkingRays& wa
 HWY_INLINE std::uint32_t walk_mesh(const MeshView& mesh, const LocalBundle& bundle,
                                    std::uint32_t rays) {
   const auto visit = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
-    const OpenCluster cluster(mesh.clusters + std::size_t{leaf} * kClusterUnit);
+    const std::byte* record = mesh.clusters + std::size_t{leaf} * kClusterUnit;
+#if HWY_TARGET != HWY_SCALAR
+    if (__builtin_popcount(active) >= kManyInLeaf) return ClusterInTurns(record).blocks(bundle, active);
+#endif
+    const OpenCluster cluster(record);
     std::uint32_t found = 0;
     for (; active != 0; active &= active - 1) {
       const auto i = static_cast<std::uint32_t>(__builtin_ctz(active));

@@ -16,6 +16,7 @@
 #include "bvh/bundle_rays-inl.h"
 #include "bvh/bundle_nodes-inl.h"
 #include "bvh/bundle_leaves-inl.h"
+#include "bvh/bundle_cluster-inl.h"
 #include "bvh/bundle_walk-inl.h"
 #include "bvh/bundle_sort-inl.h"
 #include "bvh/bundle_closest-inl.h"
