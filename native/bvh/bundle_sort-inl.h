@@ -88,9 +88,10 @@ HWY_INLINE void join_masks(const RayBundles& rays, WorldBundle& bundle, std::uin
 
 /// Rays first…first + count − 1, at most kSorted, of which ray first + k leaves point[k];
 /// sets the bits of those that are blocked.
+/// @param blockers  of each octant
 template <class Rays>
 HWY_INLINE void occluded_sorted(const SceneView& scene, const Rays& rays, std::uint32_t first,
-                                std::uint32_t count, const std::int32_t* point,
+                                std::uint32_t count, const std::int32_t* point, Blockers* blockers,
                                 std::uint32_t* bits) {
   std::uint32_t size[8] = {};
   std::uint16_t list[8][kSorted + kRayLanes];
@@ -118,7 +119,7 @@ HWY_INLINE void occluded_sorted(const SceneView& scene, const Rays& rays, std::u
         load_rays(rays, at, bundle, k);
       }
       join_masks(rays, bundle, now);
-      for (std::uint32_t found = occluded_together(scene, bundle, now); found != 0;
+      for (std::uint32_t found = occluded_together(scene, bundle, now, blockers[o]); found != 0;
            found &= found - 1) {
         const std::uint32_t i = first + order[__builtin_ctz(found)];
         bits[i / 32] |= 1u << (i % 32);
@@ -130,10 +131,11 @@ HWY_INLINE void occluded_sorted(const SceneView& scene, const Rays& rays, std::u
 void occluded(const SceneView& scene, const RaySpan& rays, std::uint32_t* bits) {
   for (std::uint32_t i = 0; i < (rays.count + 31) / 32; ++i) bits[i] = 0;
   std::int32_t point[kSorted];
+  Blockers blockers[8];
   for (std::uint32_t i = 0; i < rays.count; i += kSorted) {
     const std::uint32_t now = rays.count - i < kSorted ? rays.count - i : kSorted;
     for (std::uint32_t k = 0; k < now; ++k) point[k] = static_cast<std::int32_t>(i + k);
-    occluded_sorted(scene, rays, i, now, point, bits);
+    occluded_sorted(scene, rays, i, now, point, blockers, bits);
   }
 }
 
@@ -141,6 +143,7 @@ void occluded_bundles(const SceneView& scene, const RayBundles& bundles, std::ui
   const std::uint32_t count = bundles.ray_count();
   for (std::uint32_t i = 0; i < (count + 31) / 32; ++i) bits[i] = 0;
   std::int32_t point[kSorted];
+  Blockers blockers[8];
   std::uint32_t p = 0;
   for (std::uint32_t i = 0; i < count; i += kSorted) {
     const std::uint32_t now = count - i < kSorted ? count - i : kSorted;
@@ -148,7 +151,7 @@ void occluded_bundles(const SceneView& scene, const RayBundles& bundles, std::ui
       while (bundles.first_ray[p + 1] <= i + k) ++p;
       point[k] = static_cast<std::int32_t>(p);
     }
-    occluded_sorted(scene, bundles, i, now, point, bits);
+    occluded_sorted(scene, bundles, i, now, point, blockers, bits);
   }
 }
 
