@@ -64,11 +64,10 @@ py::bytes tags_of(const py::array& array, unsigned threads) {
 
 std::shared_ptr<Environment> environment_from_file(const std::string& path,
                                                    const std::string& color_space) {
-  if (color_space != "LINEAR" && color_space != "SRGB") {
-    throw std::invalid_argument("color_space must be LINEAR or SRGB, not " + color_space);
-  }
+  const py::capsule owner =
+      py::module_::import("komorebi_core._image").attr("read")(path, color_space);
+  auto& image = *owner.get_pointer<Image>();
   const py::gil_scoped_release release;
-  Image image = read_image(path, color_space == "SRGB" ? ColorSpace::kSrgb : ColorSpace::kLinear);
   return std::make_shared<Environment>(path, image.width, image.height, std::move(image.pixels));
 }
 

@@ -98,7 +98,7 @@ def module_version() -> str:
     """Of the module that Komorebi renders with; Cycles has the version of its Blender."""
     package = meshes.PROJECT / "build" / "release" / "package" / "komorebi_core"
     digest = hashlib.sha1()
-    for path in sorted(package.glob("_komorebi*")):
+    for path in sorted(package.glob("_*.so")):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:8]
 
