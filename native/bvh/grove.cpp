@@ -7,12 +7,6 @@
 namespace komorebi {
 namespace {
 
-/// What a treelet takes at most: every item a leaf, and as many nodes.
-constexpr std::size_t kNodeBytes = sizeof(WideNode);
-constexpr std::size_t kLeafBytes = std::size_t{ClusterView::units(1, 3)} * kClusterUnit;
-constexpr std::size_t kSmallBlock = std::size_t{1} << 18;
-constexpr std::size_t kLargeBlock = std::size_t{1} << 21;
-
 /// What a treelet costs less where it may be a forest of i + 1 nodes, in units of its root's area:
 /// about the mean of those of scanned and of built meshes.
 constexpr float kGain[kPlanWidth - 1] = {0.0f, 0.3f, 0.4f, 0.5f, 0.6f, 0.65f, 0.7f};
@@ -89,44 +83,19 @@ void Grove::give_rooms(std::uint32_t node) {
   }
 }
 
-Grove::Stage Grove::lent_part(unsigned part, unsigned parts) const {
-  const std::size_t bytes = lent_.size() / parts / alignof(WideNode) * alignof(WideNode);
-  return {lent_.data() + part * bytes, lent_.data() + (part + 1) * bytes};
-}
-
-void Grove::reserve(Stage& stage, std::size_t bytes) {
-  if (static_cast<std::size_t>(stage.end - stage.at) >= bytes) return;
-  const std::size_t usual = items_.count() < (1u << 18) ? kSmallBlock : kLargeBlock;
-  Scratch<std::byte> block(std::max(bytes, usual));
-  stage.at = block.begin();
-  stage.end = block.end();
-  const std::lock_guard lock(mutex_);
-  blocks_.push_back(std::move(block));
-}
-
-void Grove::make_room(WideTreelet& to, std::size_t items, Stage& nodes, Stage& leaves) {
-  reserve(nodes, items * kNodeBytes);
-  reserve(leaves, items * kLeafBytes);
-  to.root_nodes = reinterpret_cast<WideNode*>(nodes.at);
-  to.root_leaves = leaves.at;
-}
-
 void Grove::grow(std::uint32_t treelets, FunctionRef<void(std::uint32_t, Treelet&)> build) {
   if (!is_planned_) prepare(treelets);
+  row_.emplace(items_, std::span(treelets_.data(), treelets));
   std::atomic<std::uint32_t> next{0};
-  pool_.run(std::min(pool_.size(), treelets), [&](unsigned worker) {
+  pool_.run(std::min(pool_.size(), treelets), [&](unsigned) {
     Scratch<Treelet> desk(1);
     Treelet& t = desk[0];
-    Stage nodes = lent_part(2 * worker, 2 * pool_.size());
-    Stage leaves = lent_part(2 * worker + 1, 2 * pool_.size());
     for (std::uint32_t i = next++; i < treelets && !cancel_.raised(); i = next++) {
       t.count = 0;
       build(i, t);
-      WideTreelet& to = treelets_[i];
-      make_room(to, t.count, nodes, leaves);
-      kernel_.emit_treelet(items_, scale_, t, to);
-      nodes.at = reinterpret_cast<std::byte*>(to.nodes + to.node_count);
-      leaves.at = to.leaves + to.leaf_units * items_.leaf_unit();
+      TreeletRow::Shelf shelf = row_->take_shelf(i, t.count);
+      kernel_.emit_treelet(items_, scale_, t, treelets_[i]);
+      row_->put(i, std::move(shelf));
     }
   });
   check(cancel_);
@@ -134,15 +103,16 @@ void Grove::grow(std::uint32_t treelets, FunctionRef<void(std::uint32_t, Treelet
 
 void Grove::transplant(const BinaryTree& tree) {
   prepare(1);
-  Stage nodes, leaves;
-  make_room(treelets_[0], tree.item_count, nodes, leaves);
+  row_.emplace(items_, std::span(treelets_.data(), 1));
+  TreeletRow::Shelf shelf = row_->take_shelf(0, tree.item_count);
   kernel_.emit_tree(items_, tree, treelets_[0]);
+  row_->put(0, std::move(shelf));
   mark_treelet(0, 0);
 }
 
 WideTree Grove::finish() {
   if (!is_planned_) plan(0);
-  return join_treelets(items_, nodes_.data(), treelets_.data(), pool_, cancel_);
+  return join_treelets(items_, nodes_.data(), treelets_.data(), *row_);
 }
 
 }  // namespace komorebi

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <atomic>
-#include <mutex>
-#include <span>
-#include <vector>
+#include <optional>
 
 #include "bvh/treelet.h"
+#include "bvh/treelet_row.h"
 #include "bvh/wide_tree.h"
 #include "parallel/cancel.h"
 #include "parallel/thread_pool.h"
@@ -13,17 +12,14 @@
 namespace komorebi {
 
 /// A wide tree in the making: workers build treelets in any order, each to the end while it is in
-/// their caches, and a binary tree stands over them. Where a worker leaves a treelet's wide nodes
-/// depends on that order; the finished tree does not.
+/// their caches, and a binary tree stands over them. The finished tree does not depend on that
+/// order, but on the treelets' indices.
 class Grove {
  public:
   /// @param most_treelets  that can be marked
   /// @param scale  areas are measured in units of 1 / scale²
   Grove(const Items& items, std::uint32_t most_treelets, float scale, ThreadPool& pool,
         const Cancel& cancel);
-
-  /// Memory that workers may fill before they ask for more; it outlives this.
-  void lend(std::span<std::byte> memory) { lent_ = memory; }
 
   /// Room for nodes of the top tree that stand together; thread-safe. Node 0 is taken.
   std::uint32_t claim(std::uint32_t nodes) { return next_.fetch_add(nodes); }
@@ -50,15 +46,7 @@ class Grove {
   WideTree finish();
 
  private:
-  /// Memory that one worker fills.
-  struct Stage {
-    std::byte* at = nullptr;
-    std::byte* end = nullptr;
-  };
   void prepare(std::uint32_t treelets);
-  Stage lent_part(unsigned part, unsigned parts) const;
-  void reserve(Stage& stage, std::size_t bytes);
-  void make_room(WideTreelet& to, std::size_t items, Stage& nodes, Stage& leaves);
   PlanCost plan(std::uint32_t node);
   void give_rooms(std::uint32_t node);
 
@@ -71,9 +59,7 @@ class Grove {
   std::atomic<std::uint32_t> next_{1};
   bool is_planned_ = false;
   Scratch<WideTreelet> treelets_;
-  std::mutex mutex_;
-  std::vector<Scratch<std::byte>> blocks_;
-  std::span<std::byte> lent_;
+  std::optional<TreeletRow> row_;
 };
 
 }  // namespace komorebi

@@ -13,7 +13,6 @@ WideTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cancel)
     top.cut(order, kRunSize);
     Grove grove(items, static_cast<std::uint32_t>(top.runs.size()),
                 1.0f / max_of(order.largest_side, 1e-30f), pool, cancel);
-    grove.lend({order.spare.data(), order.spare.size()});
     for (std::uint32_t i = 0; i < top.nodes.size(); ++i) {
       const RunTree::Node& node = top.nodes[i];
       if (node.is_run) {

@@ -40,7 +40,6 @@ class SahBuilder {
         grove_(items, order.count, scale_, pool, cancel),
         sorted_(order.count),
         cluster_(order.count) {
-    grove_.lend({order.spare.data(), order.spare.size()});
     touch_pages(sorted_.data(), sorted_.size() * sizeof(std::uint32_t), pool);
     // About so many clusters there will be.
     touch_pages(cluster_.data(), cluster_.size() / 3 * sizeof(BinaryNode), pool);
@@ -144,10 +143,25 @@ class SahBuilder {
     }
   }
 
+  /// Along the top tree: the order in which they were made depends on the threads.
+  void number_treelets(std::uint32_t node, std::vector<std::uint32_t>& order) {
+    BinaryNode& it = grove_.node(node);
+    if (is_treelet(it)) {
+      order.push_back(it.first);
+      it.first = static_cast<std::uint32_t>(order.size() - 1);
+      return;
+    }
+    number_treelets(it.first, order);
+    number_treelets(it.first + 1, order);
+  }
+
   void grow_treelets() {
+    std::vector<std::uint32_t> order;
+    order.reserve(treelet_count_);
+    number_treelets(0, order);
     grove_.plan_top(treelet_count_);
     grove_.grow(treelet_count_, [&](std::uint32_t i, Treelet& t) {
-      const ClusterRange& range = treelets_[i];
+      const ClusterRange& range = treelets_[order[i]];
       std::uint32_t items[kTreeletSize], count = 0;
       for (std::uint32_t c = range.begin; c < range.end; ++c) {
         const BinaryNode& cluster = cluster_[ids_[c]];

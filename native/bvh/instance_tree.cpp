@@ -19,7 +19,7 @@ TreeView InstanceTree::view() const {
 }
 
 std::size_t InstanceTree::byte_count() const {
-  return nodes.capacity() * sizeof(WideNode) + leaf2instance.capacity() * sizeof(std::uint32_t);
+  return nodes.byte_count() + leaf2instance.byte_count();
 }
 
 Aabb instance_bounds(const InstanceView& instance, const Aabb& local_bounds) {

@@ -6,15 +6,15 @@
 #include "bvh/topology.h"
 #include "bvh/wide_node.h"
 #include "core/scene_view.h"
-#include "parallel/array.h"
+#include "parallel/late_array.h"
 #include "parallel/thread_pool.h"
 
 namespace komorebi {
 
 /// The tree over a scene's instances; leaves are entries of leaf2instance.
 struct InstanceTree {
-  Array<WideNode> nodes;
-  Array<std::uint32_t> leaf2instance;
+  LateArray<WideNode> nodes;
+  LateArray<std::uint32_t> leaf2instance;
   std::uint32_t depth = 0;
   Aabb bounds;
 

@@ -5,23 +5,21 @@
 #include <stdexcept>
 #include <vector>
 
-#include "parallel/first_touch.h"
-
 namespace komorebi {
 namespace {
 
 class TreeletJoiner {
  public:
-  TreeletJoiner(const Items& items, const BinaryNode* top, const WideTreelet* treelets)
-      : items_(items), top_(top), treelets_(treelets), kernel_(build_kernel()) {}
+  TreeletJoiner(const Items& items, const BinaryNode* top, const WideTreelet* treelets,
+                TreeletRow& row)
+      : items_(items), top_(top), treelets_(treelets), row_(row), kernel_(build_kernel()) {}
 
-  /// Wide nodes of the top and inner roots, breadth-first: so siblings stand together, behind
-  /// their parents. What is inside of treelets follows, in the order in which these were met.
+  /// Wide nodes of the top and inner roots, breadth-first: so siblings stand together.
   void lay_out() {
-    add_place({0, 1, nullptr, 0});
+    places_.push_back({0, 1, nullptr, 0});
     if (is_treelet(top_[0]) && !treelets_[top_[0].first].root[0].is_leaf()) {
       const std::uint32_t treelet = top_[0].first;
-      places_[0] = {0, 1, treelets_[treelet].root_nodes, follow(treelet)};
+      places_[0] = {0, 1, treelets_[treelet].root_nodes, treelet};
     }
     for (std::size_t at = 0; at < places_.size(); ++at) {
       const Place place = places_[at];
@@ -30,57 +28,20 @@ class TreeletJoiner {
         nodes_.push_back(wide_node(place));
         continue;
       }
-      const WideTreelet& treelet = treelets_[followers_[place.follower].treelet];
+      const WideTreelet& treelet = treelets_[place.treelet];
       depth_ = std::max(depth_, place.level + treelet.depth - 1);
-      nodes_.push_back(*place.root);
+      WideNode& node = nodes_.emplace_back(*place.root);
+      node.first_child += treelet.first_node;
+      node.first_leaf += treelet.first_leaf;
     }
   }
 
-  WideTree join(ThreadPool& pool, const Cancel& cancel) {
-    const std::size_t unit = items_.leaf_unit();
-    std::uint64_t nodes = nodes_.size(), leaves = leaves_.size() / unit;
-    for (Follower& it : followers_) {
-      it.node = static_cast<std::uint32_t>(nodes);
-      it.leaf = static_cast<std::uint32_t>(leaves);
-      nodes += treelets_[it.treelet].node_count;
-      leaves += treelets_[it.treelet].leaf_units;
-      if (nodes > kMaxItems || leaves > kMaxClusterUnits) {
-        throw std::invalid_argument("a tree has too many items");
-      }
-    }
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      if (places_[i].root != nullptr) move(nodes_[i], followers_[places_[i].follower]);
-    }
-
+  WideTree join() {
+    const std::size_t leaves = row_.leaf_end() + leaves_.size() / items_.leaf_unit();
+    if (leaves > kMaxClusterUnits) throw std::invalid_argument("a tree has too many items");
     WideTree wide;
     wide.depth = depth_;
-    wide.nodes.resize(nodes);
-    std::byte* out = nullptr;
-    if (items_.are_triangles()) {
-      wide.clusters.resize(leaves * unit + kClusterSlack);
-      out = wide.clusters.data();
-      std::memset(out + leaves * unit, 0, kClusterSlack);
-    } else {
-      wide.leaves.resize(leaves);
-      out = reinterpret_cast<std::byte*>(wide.leaves.data());
-    }
-    touch_pages(wide.nodes.data(), nodes * sizeof(WideNode), pool);
-    touch_pages(out, leaves * unit, pool);
-    pool.for_each_chunk(followers_.size(), 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end && !cancel.raised(); ++i) {
-        const Follower& it = followers_[i];
-        const WideTreelet& from = treelets_[it.treelet];
-        for (std::uint32_t k = 0; k < from.node_count; ++k) {
-          WideNode node = from.nodes[k];
-          move(node, it);
-          wide.nodes[it.node + k] = node;
-        }
-        std::memcpy(out + it.leaf * unit, from.leaves, from.leaf_units * unit);
-      }
-    });
-    check(cancel);
-    std::copy(nodes_.begin(), nodes_.end(), wide.nodes.begin());
-    std::copy(leaves_.begin(), leaves_.end(), out);
+    row_.finish(nodes_, leaves_, wide);
     return wide;
   }
 
@@ -89,11 +50,7 @@ class TreeletJoiner {
   struct Place {
     std::uint32_t binary, level;
     const WideNode* root;
-    std::uint32_t follower;
-  };
-  /// A treelet, and where its inside goes.
-  struct Follower {
-    std::uint32_t treelet, node, leaf;
+    std::uint32_t treelet;
   };
   struct Child {
     BinaryNode box;
@@ -101,14 +58,9 @@ class TreeletJoiner {
     const std::byte* leaf;
   };
 
-  void add_place(const Place& place) { places_.push_back(place); }
-  std::uint32_t follow(std::uint32_t treelet) {
-    followers_.push_back({treelet, 0, 0});
-    return static_cast<std::uint32_t>(followers_.size() - 1);
-  }
-  static void move(WideNode& node, const Follower& to) {
-    node.first_child += to.node;
-    node.first_leaf += to.leaf;
+  /// The root stands first, all others behind the insides of treelets.
+  std::uint32_t next_index() const {
+    return row_.node_end() + static_cast<std::uint32_t>(places_.size()) - 1;
   }
 
   WideNode wide_node(const Place& place) {
@@ -137,8 +89,9 @@ class TreeletJoiner {
 
     WideNode wide;
     wide.counts = static_cast<std::uint8_t>(order.inner | order.count << 4);
-    wide.first_child = static_cast<std::uint32_t>(places_.size());
-    wide.first_leaf = static_cast<std::uint32_t>(leaves_.size() / items_.leaf_unit());
+    wide.first_child = next_index();
+    const std::size_t leaf_end = row_.leaf_end();
+    wide.first_leaf = static_cast<std::uint32_t>(leaf_end + leaves_.size() / items_.leaf_unit());
     std::memset(wide.leaf, 0, sizeof(wide.leaf));
     BinaryNode boxes[kWidth];
     const Child* sorted[kWidth];
@@ -148,9 +101,9 @@ class TreeletJoiner {
       sorted[order.place[i]] = &child[i];
     }
     kernel_.quantise(boxes, kAll, order.count, wide);
-    for (int i = 0; i < order.inner; ++i) add_place(sorted[i]->place);
+    for (int i = 0; i < order.inner; ++i) places_.push_back(sorted[i]->place);
     for (int i = order.inner; i < order.count; ++i) {
-      const std::size_t at = leaves_.size() / items_.leaf_unit();
+      const std::size_t at = leaf_end + leaves_.size() / items_.leaf_unit();
       wide.leaf[i] = static_cast<std::uint8_t>(at - wide.first_leaf);
       leaves_.insert(leaves_.end(), sorted[i]->leaf, sorted[i]->leaf + bytes_of(boxes[i]));
     }
@@ -160,7 +113,6 @@ class TreeletJoiner {
   template <class Add>
   void add_roots(std::uint32_t index, std::uint32_t level, const Add& add) {
     const WideTreelet& treelet = treelets_[index];
-    const std::uint32_t follower = follow(index);
     const WideNode* root = treelet.root_nodes;
     const std::byte* leaf = treelet.root_leaves;
     for (std::uint32_t i = 0; i < treelet.root_count; ++i) {
@@ -169,7 +121,7 @@ class TreeletJoiner {
         add({box, {}, leaf});
         leaf += bytes_of(box);
       } else {
-        add({box, {0, level, root++, follower}, nullptr});
+        add({box, {0, level, root++, index}, nullptr});
       }
     }
   }
@@ -181,9 +133,9 @@ class TreeletJoiner {
   const Items& items_;
   const BinaryNode* top_;
   const WideTreelet* treelets_;
+  TreeletRow& row_;
   const BuildKernel& kernel_;
   std::vector<Place> places_;
-  std::vector<Follower> followers_;
   std::vector<WideNode> nodes_;    ///< one for each place
   std::vector<std::byte> leaves_;  ///< treelets' roots that are leaves
   std::uint32_t depth_ = 0;
@@ -192,10 +144,10 @@ class TreeletJoiner {
 }  // namespace
 
 WideTree join_treelets(const Items& items, const BinaryNode* top, const WideTreelet* treelets,
-                       ThreadPool& pool, const Cancel& cancel) {
-  TreeletJoiner joiner(items, top, treelets);
+                       TreeletRow& row) {
+  TreeletJoiner joiner(items, top, treelets, row);
   joiner.lay_out();
-  WideTree wide = joiner.join(pool, cancel);
+  WideTree wide = joiner.join();
   wide.bounds = top[0].box();
   return wide;
 }

@@ -10,7 +10,7 @@ TreeView MeshTree::view() const {
 }
 
 std::size_t MeshTree::byte_count() const {
-  return nodes.capacity() * sizeof(WideNode) + clusters.capacity();
+  return nodes.byte_count() + clusters.byte_count();
 }
 
 MeshTree build_mesh_tree(std::span<const float> vtx2xyz, std::span<const std::uint32_t> tri2vtx,

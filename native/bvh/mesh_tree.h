@@ -6,7 +6,7 @@
 #include "bvh/triangle_cluster.h"
 #include "bvh/wide_node.h"
 #include "core/scene_view.h"
-#include "parallel/array.h"
+#include "parallel/late_array.h"
 #include "parallel/thread_pool.h"
 
 namespace komorebi {
@@ -14,10 +14,10 @@ namespace komorebi {
 /// A mesh's triangles as traversal reads them: wide nodes whose leaves are clusters of up to eight
 /// triangles. Nothing else of the mesh is read to find a hit. Immutable after the build.
 struct MeshTree {
-  Array<WideNode> nodes;
+  LateArray<WideNode> nodes;
   /// Cluster records (bvh/triangle_cluster.h), one behind the other, and kClusterSlack bytes. A
   /// leaf is counted in kClusterUnit from the start.
-  Array<std::byte> clusters;
+  LateArray<std::byte> clusters;
   std::uint32_t depth = 0;
   /// Triangles without area: they are in no leaf and never hit, but keep their index.
   std::uint32_t degenerate_count = 0;

@@ -120,10 +120,9 @@ MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& 
     });
     check(cancel);
     using Item = KeyIndex<std::uint64_t>;
-    order.spare = touched<std::byte>(total * sizeof(Item), pool);
-    const std::span<Item> scratch(reinterpret_cast<Item*>(order.spare.data()), total);
+    Scratch<Item> scratch = touched<Item>(total, pool);
     // A code of all ones is that of the last cell of all, too: whatever has it is told apart here.
-    radix_sort({order.wide.data(), total}, scratch, pool, cancel);
+    radix_sort({order.wide.data(), total}, {scratch.data(), total}, pool, cancel);
     if (left_out > 0) {
       std::uint32_t kept = 0;
       for (std::uint32_t i = 0; i < total; ++i) {
@@ -139,10 +138,9 @@ MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& 
     });
     check(cancel);
     using Item = KeyIndex<std::uint32_t>;
-    order.spare = touched<std::byte>(total * sizeof(Item), pool);
-    const std::span<Item> scratch(reinterpret_cast<Item*>(order.spare.data()), total);
+    Scratch<Item> scratch = touched<Item>(total, pool);
     const unsigned bits = left_out > 0 ? 32 : grid.is_one ? 30 : 31;
-    radix_sort({order.narrow.data(), total}, scratch, pool, cancel, bits);
+    radix_sort({order.narrow.data(), total}, {scratch.data(), total}, pool, cancel, bits);
   }
   order.left_out = left_out;
   order.count = total - left_out;

@@ -21,7 +21,6 @@ struct MortonOrder {
   /// The first `count` are sorted by (code, index). Only one of the two has anything in it.
   Scratch<KeyIndex<std::uint32_t>> narrow;
   Scratch<KeyIndex<std::uint64_t>> wide;
-  Scratch<std::byte> spare;  ///< what sorting needed: memory for whoever comes next
   std::uint32_t count = 0;
   std::uint32_t left_out = 0;
   float sample_area = 0.0f;   ///< median half area of the boxes looked at

@@ -55,7 +55,8 @@ struct WideTreelet {
   WideNode* nodes;
   std::byte* leaves;
   std::uint32_t node_count, leaf_units;
-  std::uint32_t depth;  ///< in wide nodes, inner roots being the first
+  std::uint32_t first_node, first_leaf;  ///< their places in the tree, once they are known
+  std::uint32_t depth;                   ///< in wide nodes, inner roots being the first
 };
 
 /// BinaryNode::info of a treelet in the tree above, which cannot be opened; `first` is its index.

@@ -47,7 +47,6 @@ std::string walk_wide(std::span<const WideNode> nodes, std::uint32_t depth, cons
       const Aabb box = common(visit.box, node.box(i));
       if (box.is_empty()) return name + " has a child that no ray meets";
       if (i < node.inner_count()) {
-        if (node.child_node(i) <= visit.node) return name + " has a child that stands before it";
         stack.push_back({node.child_node(i), visit.level + 1, box});
       } else if (std::string complaint = leaf(node.child_leaf(i), box); !complaint.empty()) {
         return complaint;

@@ -1,5 +1,6 @@
 #include "bvh/wide_tree.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "bvh/grove.h"
@@ -34,7 +35,9 @@ WideTree build_wide_tree(const Items& items, Builder builder, ThreadPool& pool,
   check(cancel);
   WideTree wide = grow_by(items, builder, pool, cancel);
   if (wide.nodes.empty() && items.are_triangles()) {
-    wide.clusters.assign(kClusterSlack, std::byte{0});
+    wide.clusters = LateArray<std::byte>(kClusterSlack);
+    std::fill_n(wide.clusters.room(), kClusterSlack, std::byte{0});
+    wide.clusters.end_at(kClusterSlack);
   }
   return wide;
 }

@@ -5,19 +5,19 @@
 #include "bvh/items.h"
 #include "bvh/topology.h"
 #include "bvh/wide_node.h"
-#include "parallel/array.h"
+#include "parallel/late_array.h"
 #include "parallel/thread_pool.h"
 
 namespace komorebi {
 
-/// Wide nodes (0 is the root, siblings are neighbours, children stand behind their parent) and
-/// leaves as bvh/mesh_tree.h or bvh/instance_tree.h have them.
+/// Wide nodes (0 is the root, siblings are neighbours) and leaves as bvh/mesh_tree.h or
+/// bvh/instance_tree.h have them.
 struct WideTree {
-  Array<WideNode> nodes;
-  Array<std::byte> clusters;    ///< over triangles
-  Array<std::uint32_t> leaves;  ///< over boxes: one item each
-  std::uint32_t depth = 0;      ///< wide nodes on the longest way down, at most kMaxDepth
-  std::uint32_t left_out = 0;   ///< items in no leaf
+  LateArray<WideNode> nodes;
+  LateArray<std::byte> clusters;    ///< over triangles
+  LateArray<std::uint32_t> leaves;  ///< over boxes: one item each
+  std::uint32_t depth = 0;          ///< wide nodes on the longest way down, at most kMaxDepth
+  std::uint32_t left_out = 0;       ///< items in no leaf
   Aabb bounds;
 };
 

@@ -5,6 +5,7 @@
 
 #if defined(__linux__)
 #include <sys/mman.h>
+#include <unistd.h>
 #endif
 
 namespace komorebi {
@@ -27,7 +28,22 @@ void* map_pages(std::size_t bytes) {
 }
 
 void unmap_pages(void* pages, std::size_t bytes) {
-  munmap(pages, bytes);
+  if (bytes > 0) munmap(pages, bytes);
+}
+
+void back_pages(void* pages, std::size_t bytes) {
+#if defined(MADV_POPULATE_WRITE)
+  madvise(pages, bytes, MADV_POPULATE_WRITE);  // what cannot is backed when it is written
+#else
+  static_cast<void>(pages), static_cast<void>(bytes);
+#endif
+}
+
+std::size_t trim_pages(void* pages, std::size_t bytes, std::size_t kept) {
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  kept = (kept + page - 1) / page * page;
+  if (kept < bytes) munmap(static_cast<std::byte*>(pages) + kept, bytes - kept);
+  return kept;
 }
 
 #else

@@ -16,5 +16,10 @@ constexpr std::size_t whole_huge_pages(std::size_t bytes) {
 /// @param bytes  whole huge pages, more than none
 void* map_pages(std::size_t bytes);
 void unmap_pages(void* pages, std::size_t bytes);
+/// Has memory put behind pages that may be written already, where the system can do that.
+void back_pages(void* pages, std::size_t bytes);
+/// Gives back what lies behind the first `kept` bytes; returns how many are left to unmap, at most
+/// a small page more.
+std::size_t trim_pages(void* pages, std::size_t bytes, std::size_t kept);
 
 }  // namespace komorebi
