@@ -71,7 +71,6 @@ HWY_INLINE void walk_closest(const TreeView& tree, const BundleSlab& slab, std::
       for (; found != 0; found &= found - 1) {
         const auto i = static_cast<std::uint32_t>(__builtin_ctz(found));
         ends.update(i);
-        walking.update_end(i);
       }
     } else {
       visit_node<true>(tree.nodes[child], walking, nullptr, active, waiting);

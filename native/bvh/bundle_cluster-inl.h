@@ -16,6 +16,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 inline constexpr int kManyInLeaf = 8;  ///< rays that are better in lanes themselves
 
+/// A cluster whose triangles take turns, with its vertices put together.
 class ClusterInTurns {
  public:
   HWY_INLINE explicit ClusterInTurns(const std::byte* record) : cluster_(record) {

@@ -14,6 +14,7 @@
 #include "hwy/highway.h"
 #include "bvh/traverse_simd-inl.h"
 #include "bvh/bundle_rays-inl.h"
+#include "bvh/bundle_boxes-inl.h"
 #include "bvh/bundle_nodes-inl.h"
 #include "bvh/bundle_leaves-inl.h"
 #include "bvh/bundle_cluster-inl.h"
