@@ -14,15 +14,20 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 inline constexpr std::uint32_t kSorted = 1024;  ///< rays sorted at a time
 
-HWY_INLINE std::uint32_t octant(float x, float y, float z) {
-  return (x < 0.0f ? 1u : 0u) | (y < 0.0f ? 2u : 0u) | (z < 0.0f ? 4u : 0u);
-}
-
 /// Where kRayLanes rays come from: their numbers, and those of their points.
 struct Places {
   hn::Vec<RayIndexTag> ray, point;
 };
 
+/// Where the directions of kRayLanes rays stand.
+HWY_INLINE hn::Vec<RayIndexTag> places_of(const RaySpan&, const hn::Vec<RayIndexTag>& ray) {
+  return ray;
+}
+HWY_INLINE hn::Vec<RayIndexTag> places_of(const RayBundles& rays, const hn::Vec<RayIndexTag>& ray) {
+  if (rays.place == nullptr) return ray;
+  const hn::RebindToUnsigned<RayTag> du;
+  return hn::BitCast(RayIndexTag(), hn::GatherIndex(du, rays.place, ray));
+}
 HWY_INLINE void fetch(const float* from, const hn::Vec<RayIndexTag>& at, float* to) {
   hn::Store(hn::GatherIndex(RayTag(), from, at), RayTag(), to);
 }
@@ -55,19 +60,44 @@ HWY_INLINE void load_rays(const RaySpan& from, const Places& at, WorldBundle& to
 
 HWY_INLINE void load_rays(const RayBundles& from, Places at, WorldBundle& to, std::uint32_t k) {
   const hn::RebindToUnsigned<RayTag> du;
-  if (from.place != nullptr) {
-    at.ray = hn::BitCast(RayIndexTag(), hn::GatherIndex(du, from.place, at.ray));
-  }
+  at.ray = places_of(from, at.ray);
   load_shared(from, at, to, k);
   hn::Store(hn::Zero(RayTag()), RayTag(), to.rays.t_min + k);
   hn::Store(hn::Set(du, from.mask), du, to.mask + k);
 }
 
-HWY_INLINE std::uint32_t place_of(const RaySpan&, std::uint32_t i) {
-  return i;
+HWY_INLINE bool follow(const RaySpan&) {
+  return true;
 }
-HWY_INLINE std::uint32_t place_of(const RayBundles& rays, std::uint32_t i) {
-  return rays.place == nullptr ? i : rays.place[i];
+HWY_INLINE bool follow(const RayBundles& rays) {
+  return rays.place == nullptr;
+}
+
+/// The octants that rays first…first + count − 1 point to; writes up to kRayLanes − 1 more.
+template <class Rays>
+HWY_INLINE void find_octants(const Rays& rays, std::uint32_t first, std::uint32_t count,
+                             std::int32_t* octants) {
+  const RayTag d;
+  const RayIndexTag di;
+  const auto last = hn::Set(di, static_cast<std::int32_t>(first + count - 1));
+  for (std::uint32_t k = 0; k < count; k += kRayLanes) {
+    RayVec x, y, z;
+    if (follow(rays) && k + kRayLanes <= count) {
+      x = hn::LoadU(d, rays.direction_x + first + k);
+      y = hn::LoadU(d, rays.direction_y + first + k);
+      z = hn::LoadU(d, rays.direction_z + first + k);
+    } else {
+      const auto ray = hn::Min(hn::Iota(di, static_cast<std::int32_t>(first + k)), last);
+      const auto at = places_of(rays, ray);
+      x = hn::GatherIndex(d, rays.direction_x, at);
+      y = hn::GatherIndex(d, rays.direction_y, at);
+      z = hn::GatherIndex(d, rays.direction_z, at);
+    }
+    const auto bit = [&](const RayVec& v, std::int32_t value) HWY_ATTR {
+      return hn::IfThenElseZero(hn::RebindMask(di, hn::Lt(v, hn::Zero(d))), hn::Set(di, value));
+    };
+    hn::StoreU(hn::Or(hn::Or(bit(x, 1), bit(y, 2)), bit(z, 4)), di, octants + k);
+  }
 }
 
 /// Bits that any of a bundle's rays see by, and that all do.
@@ -95,10 +125,10 @@ HWY_INLINE void occluded_sorted(const SceneView& scene, const Rays& rays, std::u
                                 std::uint32_t* bits) {
   std::uint32_t size[8] = {};
   std::uint16_t list[8][kSorted + kRayLanes];
+  std::int32_t octants[kSorted + kRayLanes];
+  find_octants(rays, first, count, octants);
   for (std::uint32_t k = 0; k < count; ++k) {
-    const std::uint32_t i = first + k;
-    const std::uint32_t at = place_of(rays, i);
-    const auto o = octant(rays.direction_x[at], rays.direction_y[at], rays.direction_z[at]);
+    const std::int32_t o = octants[k];
     list[o][size[o]++] = static_cast<std::uint16_t>(k);
   }
   for (std::uint32_t o = 0; o < 8; ++o) {
@@ -142,14 +172,20 @@ void occluded(const SceneView& scene, const RaySpan& rays, std::uint32_t* bits) 
 void occluded_bundles(const SceneView& scene, const RayBundles& bundles, std::uint32_t* bits) {
   const std::uint32_t count = bundles.ray_count();
   for (std::uint32_t i = 0; i < (count + 31) / 32; ++i) bits[i] = 0;
-  std::int32_t point[kSorted];
+  std::int32_t point[kSorted + kRayLanes];
   Blockers blockers[8];
   std::uint32_t p = 0;
   for (std::uint32_t i = 0; i < count; i += kSorted) {
     const std::uint32_t now = count - i < kSorted ? count - i : kSorted;
-    for (std::uint32_t k = 0; k < now; ++k) {
+    for (std::uint32_t k = 0; k < now;) {
       while (bundles.first_ray[p + 1] <= i + k) ++p;
-      point[k] = static_cast<std::int32_t>(p);
+      const std::uint32_t left = bundles.first_ray[p + 1] - i;
+      const std::uint32_t end = left < now ? left : now;
+      // Some too many each time: the next point's follow.
+      for (; k < end; k += kRayLanes) {
+        hn::StoreU(hn::Set(RayIndexTag(), static_cast<std::int32_t>(p)), RayIndexTag(), point + k);
+      }
+      k = end;
     }
     occluded_sorted(scene, bundles, i, now, point, blockers, bits);
   }
