@@ -6,6 +6,73 @@ namespace komorebi {
 namespace HWY_NAMESPACE {
 namespace {
 
+/// is_coarse (bvh/wide_plan.h) in lanes.
+class CoarseNodes {
+ public:
+  explicit HWY_INLINE CoarseNodes(Vector4 step)
+      : growth_(make_box(hn::Zero(Float4()), hn::Neg(hn::Add(step, step)))) {}
+  /// In a wide node that stands for `node`.
+  static HWY_INLINE CoarseNodes within(const BinaryNode& node) {
+    const Lanes box = node_box(node);
+    const auto sides = hn::Neg(hn::Add(low(box), minus_high(box)));
+    return CoarseNodes(hn::Div(sides, hn::Set(Float4(), 255.0f)));
+  }
+  HWY_INLINE bool operator()(const BinaryNode& node) const {
+    const Lanes box = node_box(node);
+    return area_of(sum(box, growth_), 1.0f) > 1.25f * area_of(box, 1.0f);
+  }
+
+ private:
+  Lanes growth_;
+};
+
+struct PlannedChildren {
+  int count, inner;
+};
+
+/// The children of the wide node that stands for `node`, which is inner, in ChildOrder
+/// (bvh/wide_plan.h): inner ones first, of either kind the larger ones last.
+HWY_INLINE PlannedChildren planned_children(const BinaryNode* nodes, std::uint32_t node,
+                                            std::uint32_t* children) {
+  const hn::CappedTag<std::int32_t, kPlanWidth> d;
+  const CoarseNodes is_coarse = CoarseNodes::within(nodes[node]);
+  OpenNodes open(nodes);
+  open.push_wide(node);
+  PlannedChildren planned{0, 0};
+  std::uint32_t all[kPlanWidth];
+  alignas(32) std::int32_t key[kPlanWidth], place[kPlanWidth];
+  for (std::int32_t& k : key) k = std::numeric_limits<std::int32_t>::max();
+  std::uint32_t next = 0;
+  int room = 0, size = 0;
+  while (open.next(&next, &room, &size)) {
+    const BinaryNode& child = nodes[next];
+    if (size > 1 && !is_coarse(child)) {
+      open.push_children(next, size);
+      continue;
+    }
+    all[planned.count] = next;
+    // Areas, whose order is that of their bits; the lowest tell equal ones apart.
+    const std::uint32_t area = std::bit_cast<std::uint32_t>(area_of(node_box(child), 1.0f));
+    const std::uint32_t inner = child.is_leaf() ? 0 : kInnerBit;
+    const std::uint32_t last_bits = kPlanWidth - 1;
+    key[planned.count] = static_cast<std::int32_t>(((area | inner) & ~last_bits) |
+                                                   static_cast<std::uint32_t>(planned.count));
+    planned.inner += child.is_leaf() ? 0 : 1;
+    ++planned.count;
+  }
+  for (std::size_t first = 0; first < kPlanWidth; first += hn::Lanes(d)) {
+    const auto keys = hn::Load(d, key + first);
+    auto places = hn::Zero(d);
+    for (int k = 0; k < planned.count; ++k) {
+      const auto before = hn::VecFromMask(d, hn::Lt(hn::Set(d, key[k]), keys));
+      places = hn::Sub(places, before);
+    }
+    hn::Store(places, d, place + first);
+  }
+  for (int i = 0; i < planned.count; ++i) children[place[i]] = all[i];
+  return planned;
+}
+
 /// What a leaf holds: items, and corners as LeafCorners wants them.
 struct LeafItems {
   std::uint32_t item[kClusterTriangles];

@@ -5,6 +5,8 @@
 // SAH over clusters, a third as many as items (Ganestam et al. 2015, "Bonsai", has treelets in
 // their place, and loses where Morton cells cut). Below, what has become small enough for a
 // worker's nearest cache is split item by item.
+#include <mutex>
+
 #include "bvh/grove.h"
 #include "bvh/morton_order.h"
 #include "bvh/topology.h"
@@ -82,22 +84,37 @@ class SahBuilder {
     cluster_count_ = next;
     ids_ = Scratch<std::uint32_t>(cluster_count_);
     moved_ = Scratch<std::uint32_t>(cluster_count_);
-    std::uint32_t at = 0;
-    for (std::size_t i = 0; i < base.size(); ++i) {
-      for (std::uint32_t k = 0; k < count[i]; ++k) ids_[at++] = base[i] + k;
-    }
+    list_clusters(base, count);
+  }
+
+  /// Run by run, each with the clusters from base[i] on, and what all of them span.
+  void list_clusters(const std::vector<std::uint32_t>& base,
+                     const std::vector<std::uint32_t>& count) {
+    std::vector<std::uint32_t> place(base.size() + 1, 0);
+    for (std::size_t i = 0; i < base.size(); ++i) place[i + 1] = place[i] + count[i];
+    all_ = {0, cluster_count_, 0, {}};
+    std::fill_n(all_.centres.v, 8, kFloatMax);
+    std::mutex mutex;
+    pool_.for_each_chunk(base.size(), 32, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        for (std::uint32_t k = 0; k < count[i]; ++k) ids_[place[i] + k] = base[i] + k;
+      }
+      ClusterRange part{place[begin], place[end], 0, {}};
+      kernel_.measure(clusters(), part);
+      const std::lock_guard lock(mutex);
+      all_.items += part.items;
+      for (int k = 0; k < 8; ++k) {
+        all_.centres.v[k] = min_of(all_.centres.v[k], part.centres.v[k]);
+      }
+    });
   }
 
   Clusters clusters() { return {cluster_.data(), ids_.data(), moved_.data()}; }
 
   void split_top() {
     treelets_ = Scratch<ClusterRange>(cluster_count_);
-    Part whole{0, 0, {}};
-    whole.range.begin = 0;
-    whole.range.end = cluster_count_;
-    kernel_.measure(clusters(), whole.range);
     // Rounds over the ranges that are still large, all at once.
-    std::vector<Part> now{whole}, next;
+    std::vector<Part> now{{0, 0, all_}}, next;
     while (!now.empty()) {
       next.assign(2 * now.size(), Part{});
       pool_.for_each_chunk(now.size(), 1, [&](std::size_t i, std::size_t) {
@@ -184,6 +201,7 @@ class SahBuilder {
   Scratch<BinaryNode> cluster_;    ///< first and info: a run of sorted_
   std::uint32_t cluster_count_ = 0;
   Scratch<std::uint32_t> ids_, moved_;
+  ClusterRange all_;
   Scratch<ClusterRange> treelets_;
   std::atomic<std::uint32_t> treelet_count_{0};
 };

@@ -51,12 +51,26 @@ Scratch<T> touched(std::size_t count, ThreadPool& pool) {
   return scratch;
 }
 
+/// Asks for what a walk of this stride reads some steps later: each is in a page of its own.
+void fetch_later(const Items& items, std::size_t i, std::size_t stride) {
+  constexpr std::size_t kIndicesAhead = 32, kVerticesAhead = 16;
+#if defined(__GNUC__)
+  if (!items.are_triangles() || i + kIndicesAhead * stride >= items.count()) return;
+  __builtin_prefetch(&items.tri2vtx[3 * (i + kIndicesAhead * stride)]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t vertex = items.tri2vtx[3 * (i + kVerticesAhead * stride) + k];
+    __builtin_prefetch(&items.vtx2xyz[3 * vertex]);
+  }
+#endif
+}
+
 std::vector<Aabb> sample_of(const Items& items) {
   std::vector<Aabb> sample;
   const std::size_t count = items.count();
   const std::size_t stride = std::max<std::size_t>(1, count / kSamples);
   sample.reserve(count / stride + 1);
   for (std::size_t i = 0; i < count; i += stride) {
+    fetch_later(items, i, stride);
     if (!items.is_left_out(i)) sample.push_back(items.box(i));
   }
   for (std::size_t i = 0; i < count && sample.empty(); ++i) {

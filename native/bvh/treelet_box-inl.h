@@ -31,6 +31,9 @@ HWY_INLINE Vector4 low(Lanes box) {
 HWY_INLINE Vector4 minus_high(Lanes box) {
   return hn::UpperHalf(Float4(), box);
 }
+HWY_INLINE Lanes sum(Lanes a, Lanes b) {
+  return hn::Add(a, b);
+}
 HWY_INLINE Lanes make_box(Vector4 lo, Vector4 minus_hi) {
   return hn::Combine(Float8(), minus_hi, lo);
 }
@@ -59,6 +62,9 @@ HWY_INLINE Vector4 low(Lanes box) {
 }
 HWY_INLINE Vector4 minus_high(Lanes box) {
   return box.minus_hi;
+}
+HWY_INLINE Lanes sum(Lanes a, Lanes b) {
+  return {hn::Add(a.lo, b.lo), hn::Add(a.minus_hi, b.minus_hi)};
 }
 HWY_INLINE Lanes make_box(Vector4 lo, Vector4 minus_hi) {
   return {lo, minus_hi};

@@ -101,18 +101,23 @@ class OpenNodes {
   void push_wide(std::uint32_t node) {
     push_children(node, static_cast<int>((nodes_[node].info >> 27) & 7u) + 1);
   }
+  /// The next node, and as how many it is best: 1, it stays as it is. False: none is left.
+  bool next(std::uint32_t* node, int* room, int* size) {
+    if (count_ == 0) return false;
+    *node = node_[--count_];
+    *room = room_[count_];
+    const BinaryNode& it = nodes_[*node];
+    // The largest size up to `room` that is better than the next smaller one.
+    const std::uint32_t better = ~(it.info >> 21) & ((1u << (*room - 1)) - 1u);
+    *size = it.is_leaf() || better == 0 ? 1 : 33 - std::countl_zero(better);
+    return true;
+  }
   /// The next node that stays as it is in a wide node of grid step `step`; false: none is left.
   bool pop(const Vec3& step, std::uint32_t* node, int* room) {
-    while (count_ > 0) {
-      const std::uint32_t at = node_[--count_];
-      const BinaryNode& it = nodes_[at];
-      *node = at;
-      *room = room_[count_];
-      if (it.is_leaf()) return true;
-      // The largest size up to `room` that is better than the next smaller one.
-      const std::uint32_t better = ~(it.info >> 21) & ((1u << (*room - 1)) - 1u);
-      if (better == 0 || is_coarse(step, it)) return true;
-      push_children(at, 33 - std::countl_zero(better));
+    int size = 0;
+    while (next(node, room, &size)) {
+      if (size == 1 || is_coarse(step, nodes_[*node])) return true;
+      push_children(*node, size);
     }
     return false;
   }
@@ -153,23 +158,5 @@ class ChildOrder {
  private:
   std::uint32_t key_[kPlanWidth];
 };
-
-struct PlannedChildren {
-  int count, inner;
-};
-
-/// The children of the wide node that stands for `node`, which is inner: at most kPlanWidth.
-inline PlannedChildren planned_children(const BinaryNode* nodes, std::uint32_t node,
-                                        std::uint32_t* children) {
-  const Vec3 step = step_of(nodes[node]);
-  OpenNodes open(nodes);
-  open.push_wide(node);
-  ChildOrder order;
-  std::uint32_t all[kPlanWidth];
-  int room = 0;
-  while (open.pop(step, &all[order.count], &room)) order.add(nodes[all[order.count]]);
-  for (int i = 0; i < order.count; ++i) children[order.place[i]] = all[i];
-  return {order.count, order.inner};
-}
 
 }  // namespace komorebi
