@@ -68,7 +68,7 @@ class SahBuilder {
         std::uint32_t* const sorted = &sorted_[run.first];
         order_.copy_run(run, sorted, t.code);
         t.count = 0;
-        kernel_.load(items_, sorted, run.count, t);
+        kernel_.load_boxes(items_, sorted, run.count, t);
         kernel_.linear(kClusterLimit, kLargestCluster * order_.sample_area, t);
         for (std::uint32_t k = 0; k < run.count; ++k) sorted[k] = t.item[t.ids[k]];
         for (std::uint32_t k = 0; k < t.node_count; ++k) count[i] += t.nodes[k].is_leaf() ? 1u : 0u;

@@ -35,7 +35,8 @@ namespace HWY_NAMESPACE {
 extern const BuildKernel kBuildKernel;
 const BuildKernel kBuildKernel = {&HWY_STR(HWY_NAMESPACE)[2],  // N_AVX2: "AVX2"
                                   &code,
-                                  &load,
+                                  &load<true>,
+                                  &load<false>,
                                   &linear,
                                   &sah,
                                   &measure,

@@ -32,6 +32,7 @@ struct Treelet {
   std::uint32_t count = 0;
   std::uint32_t node_count = 0;
   WideBox box[kTreeletSize];
+  alignas(16) float centre[kTreeletSize][4];          ///< of the boxes; only sah() fills it
   alignas(16) std::uint32_t corner[kTreeletSize][4];  ///< vertices of a triangle, and kNone
   std::uint64_t vertex_bits[kTreeletSize];            ///< of its vertices' hashes
   std::uint32_t item[kTreeletSize];                   ///< local index → item
@@ -90,6 +91,9 @@ struct BuildKernel {
   /// Puts items on the desk behind those that are there.
   void (*load)(const Items& items, const std::uint32_t* indices, std::uint32_t count,
                Treelet& treelet);
+  /// The same without what is known of triangles' corners.
+  void (*load_boxes)(const Items& items, const std::uint32_t* indices, std::uint32_t count,
+                     Treelet& treelet);
   /// Builds leaves, and what is above them without its boxes, by the codes of the items (sorted).
   void (*linear)(LeafLimit limit, float largest_leaf, Treelet& treelet);
   /// Builds by the surface-area heuristic. `scale`: 1 / a length typical of the tree.

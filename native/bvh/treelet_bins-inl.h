@@ -12,6 +12,7 @@ struct ItemList {
   std::uint32_t* ids;
   std::uint32_t* moved;
   HWY_INLINE Lanes box(std::uint32_t id) const { return load_box(t.box[id].v); }
+  HWY_INLINE Vector4 centre(std::uint32_t id) const { return hn::Load(Float4(), t.centre[id]); }
   HWY_INLINE void fetch(std::uint32_t, std::uint32_t, std::uint32_t) const {}  // in the cache
   HWY_INLINE std::uint32_t weight(std::uint32_t) const { return 1; }
 };
@@ -21,6 +22,7 @@ struct ClusterList {
   std::uint32_t* ids;
   std::uint32_t* moved;
   HWY_INLINE Lanes box(std::uint32_t id) const { return node_box(cluster[id]); }
+  HWY_INLINE Vector4 centre(std::uint32_t id) const { return centre_of(box(id)); }
   /// What comes kAhead steps later.
   HWY_INLINE void fetch(std::uint32_t i, std::uint32_t step, std::uint32_t end) const {
     if (i + kAhead * step < end) hwy::Prefetch(&cluster[ids[i + kAhead * step]]);
@@ -40,7 +42,7 @@ Range measure_range(const List& list, std::uint32_t begin, std::uint32_t end) {
   Range range{begin, end, 0, empty_lanes()};
   for (std::uint32_t i = begin; i < end; ++i) {
     list.fetch(i, 1, end);
-    range.centres = merge(range.centres, point_box(centre_of(list.box(list.ids[i]))));
+    range.centres = merge(range.centres, point_box(list.centre(list.ids[i])));
     range.items += list.weight(list.ids[i]);
   }
   return range;
@@ -142,7 +144,7 @@ HWY_INLINE void split_range(const List& list, float scale, const Range& range, R
   const auto put_into_bins = [&](std::uint32_t i) {
     const std::uint32_t id = list.ids[i];
     const Lanes box = list.box(id);
-    const auto bits = hn::BitCast(du, place_of(centre_of(box)));
+    const auto bits = hn::BitCast(du, place_of(list.centre(id)));
     const auto bin = hn::And(hn::ShiftRight<23 - kBinBits>(bits), hn::Set(du, kMostBins - 1u));
     const auto bytes = hn::U8FromU32(bin);
     std::uint32_t packed = hn::GetLane(hn::BitCast(hn::FixedTag<std::uint32_t, 1>(), bytes));
@@ -175,7 +177,7 @@ HWY_INLINE void split_range(const List& list, float scale, const Range& range, R
   for (std::uint32_t i = range.begin; i < range.end; ++i) {
     list.fetch(i, 1, range.end);
     const std::uint32_t id = list.ids[i];
-    const auto centre = centre_of(list.box(id));
+    const auto centre = list.centre(id);
     std::uint8_t right_of[8];
     hn::StoreMaskBits(Float4(), hn::Ge(place_of(centre), first_right), right_of);
     const std::uint32_t is_right = (right_of[0] >> plane.axis) & 1u;

@@ -44,9 +44,7 @@ HWY_INLINE void split_few(Treelet& t, float scale, const Range& range, Range* le
   std::uint32_t* const ids = t.ids + range.begin;
   alignas(64) float centre[3][kFewItems];
   for (std::uint32_t i = 0; i < count; ++i) {
-    alignas(16) float point[4];
-    hn::Store(centre_of(load_box(t.box[ids[i]].v)), Float4(), point);
-    for (int axis = 0; axis < 3; ++axis) centre[axis][i] = point[axis];
+    for (int axis = 0; axis < 3; ++axis) centre[axis][i] = t.centre[ids[i]][axis];
   }
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
   for (std::uint32_t i = count; i < (count + lanes - 1) / lanes * lanes; ++i) {

@@ -119,6 +119,7 @@ HWY_INLINE std::uint64_t vertex_bit(std::uint32_t vertex) {
   return std::uint64_t{1} << ((vertex * 0x9E3779B1u) >> 26);
 }
 
+template <bool kWithCorners>
 void load(const Items& items, const std::uint32_t* indices, std::uint32_t count, Treelet& t) {
   const VertexReader vertex(items);
   const bool triangles = items.are_triangles();
@@ -138,9 +139,11 @@ void load(const Items& items, const std::uint32_t* indices, std::uint32_t count,
     t.ids[at] = at;
     if (triangles) {
       const std::uint32_t* corner = &items.tri2vtx[3 * std::size_t{item}];
-      for (int k = 0; k < 3; ++k) t.corner[at][k] = corner[k];
-      t.corner[at][3] = kNone;
-      t.vertex_bits[at] = vertex_bit(corner[0]) | vertex_bit(corner[1]) | vertex_bit(corner[2]);
+      if (kWithCorners) {
+        for (int k = 0; k < 3; ++k) t.corner[at][k] = corner[k];
+        t.corner[at][3] = kNone;
+        t.vertex_bits[at] = vertex_bit(corner[0]) | vertex_bit(corner[1]) | vertex_bit(corner[2]);
+      }
       store_box(triangle_box(vertex(corner[0]), vertex(corner[1]), vertex(corner[2])), t.box[at].v);
     } else {
       const Aabb& box = items.boxes[item];

@@ -15,6 +15,9 @@ class SahTreelet {
       : limit_(limit), scale_(scale), t_(t), list_{t, t.ids, t.moved} {}
 
   void build() {
+    for (std::uint32_t i = 0; i < t_.count; ++i) {
+      hn::Store(centre_of(load_box(t_.box[i].v)), Float4(), t_.centre[i]);
+    }
     t_.node_count = 1;
     add(0, 0, measure_range(list_, 0, t_.count));
   }
