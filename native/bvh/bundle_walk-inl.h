@@ -56,18 +56,23 @@ class Blockers {
 
   /// A leaf has blocked so many rays.
   HWY_INLINE void keep(std::uint32_t instance, std::uint32_t index, int count) {
-    Leaf& least = leaves_[leaves_[0].count < leaves_[1].count ? 0 : 1];
-    if (count >= kFew && count > least.count) least = {instance, index, count};
+    if (count < kFew) return;
+    Leaf* least = leaves_;
+    for (Leaf& leaf : leaves_) {
+      if (leaf.count < least->count) least = &leaf;
+    }
+    if (count > least->count) *least = {instance, index, count};
   }
 
  private:
-  static constexpr int kFew = 5;  ///< rays that it takes to be asked first
+  static constexpr int kKept = 3;
+  static constexpr int kFew = 4;  ///< rays that it takes to be asked first
 
   struct Leaf {
     std::uint32_t instance = 0, index = 0;
     int count = 0;  ///< of rays blocked last; 0: not in use
   };
-  Leaf leaves_[2];
+  Leaf leaves_[kKept];
 };
 
 /// Rays of `bundle` that a mesh blocks.
