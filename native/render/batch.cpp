@@ -10,23 +10,30 @@ namespace komorebi {
 namespace {
 
 constexpr std::size_t kPathsPerBatch = 4096;
+/// All samples of so many pixels follow each other, then those of the next: their light rays, which
+/// are traced together, leave places that lie close.
+constexpr std::size_t kPixelsTogether = 64;
 
 }  // namespace
 
-void BatchIntegrator::start(std::size_t begin, std::size_t end, std::uint32_t first) {
+void BatchIntegrator::start(std::size_t begin, std::size_t end, std::uint32_t first,
+                            std::uint32_t samples) {
   paths_.clear();
   const auto count = static_cast<std::uint32_t>(end - begin);
   for (auto& column : starts_) column.resize(std::size_t{count} + kPadding);
-  auto pixel = static_cast<std::uint32_t>(begin % pixels_.size());
-  auto sample = first + static_cast<std::uint32_t>(begin / pixels_.size());
   for (std::uint32_t i = 0; i < count; ++i) {
+    const std::size_t group = (begin + i) / (kPixelsTogether * samples);
+    const std::size_t within = (begin + i) % (kPixelsTogether * samples);
+    const std::size_t in_group =
+        std::min(kPixelsTogether, pixels_.size() - group * kPixelsTogether);
+    const auto pixel = static_cast<std::uint32_t>(group * kPixelsTogether + within % in_group);
+    const auto sample = first + static_cast<std::uint32_t>(within / in_group);
     const Pixel& at = pixels_[pixel];
     paths_.push_back({pixel, sample});
     starts_[kColumnX][i] = at.x;
     starts_[kColumnY][i] = at.y;
     starts_[kColumnSample][i] = sample;
     starts_[kColumnSeed][i] = at.seed;
-    if (++pixel == pixels_.size()) pixel = 0, ++sample;
   }
   start_camera_rays(count);
   hits_.resize(paths_.size());
@@ -125,10 +132,10 @@ void BatchIntegrator::add_pixel(std::uint32_t x, std::uint32_t y) {
 template <class Visit>
 bool BatchIntegrator::trace(std::uint32_t first, std::uint32_t count, const Cancel& cancel,
                             const Visit& visit) {
-  const std::size_t paths = pixels_.size() * count;  // all of one sample, then of the next
+  const std::size_t paths = pixels_.size() * count;
   for (std::size_t begin = 0; begin < paths; begin += kPathsPerBatch) {
     if (cancel.raised()) return false;
-    start(begin, std::min(paths, begin + kPathsPerBatch), first);
+    start(begin, std::min(paths, begin + kPathsPerBatch), first, count);
     shade();
     if (!light(cancel)) return false;
     for (std::size_t i = 0; i < paths_.size(); ++i) {

@@ -52,7 +52,8 @@ class BatchIntegrator {
   /// Samples [first, first + count) of pixels_; visit(pixel, sample, result) is told each.
   template <class Visit>
   bool trace(std::uint32_t first, std::uint32_t count, const Cancel& cancel, const Visit& visit);
-  void start(std::size_t begin, std::size_t end, std::uint32_t first);
+  /// Paths [begin, end) of the samples [first, first + samples) of pixels_.
+  void start(std::size_t begin, std::size_t end, std::uint32_t first, std::uint32_t samples);
   void start_camera_rays(std::uint32_t count);
   void shade();
   bool light(const Cancel& cancel);
