@@ -32,7 +32,7 @@ struct Treelet {
   std::uint32_t count = 0;
   std::uint32_t node_count = 0;
   WideBox box[kTreeletSize];
-  alignas(16) float centre[kTreeletSize][4];          ///< of the boxes; only sah() fills it
+  alignas(16) float centre[kTreeletSize][4];          ///< of the boxes, minus the longest side; by sah()
   alignas(16) std::uint32_t corner[kTreeletSize][4];  ///< vertices of a triangle, and kNone
   std::uint64_t vertex_bits[kTreeletSize];            ///< of its vertices' hashes
   std::uint32_t item[kTreeletSize];                   ///< local index → item
@@ -78,7 +78,7 @@ struct Clusters {
 struct ClusterRange {
   std::uint32_t begin, end;
   std::uint32_t items;  ///< in all its clusters
-  WideBox centres;      ///< bounds of the centres
+  WideBox centres;      ///< bounds of the centres; in v[3] minus the longest side of a box
 };
 
 /// The inner loops of the builders, compiled for one instruction set. They give the same tree in

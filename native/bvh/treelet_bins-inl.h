@@ -22,7 +22,7 @@ struct ClusterList {
   std::uint32_t* ids;
   std::uint32_t* moved;
   HWY_INLINE Lanes box(std::uint32_t id) const { return node_box(cluster[id]); }
-  HWY_INLINE Vector4 centre(std::uint32_t id) const { return centre_of(box(id)); }
+  HWY_INLINE Vector4 centre(std::uint32_t id) const { return centre_and_side_of(box(id)); }
   /// What comes kAhead steps later.
   HWY_INLINE void fetch(std::uint32_t i, std::uint32_t step, std::uint32_t end) const {
     if (i + kAhead * step < end) hwy::Prefetch(&cluster[ids[i + kAhead * step]]);
@@ -34,7 +34,7 @@ struct ClusterList {
 struct Range {
   std::uint32_t begin, end;
   std::uint32_t items;
-  Lanes centres;
+  Lanes centres;  ///< their bounds; lane 3 of the low corner: minus the longest side of a box
 };
 
 template <class List>
@@ -56,7 +56,7 @@ void split_in_halves(const List& list, const Range& range, Range* left, Range* r
   *right = measure_range(list, middle, range.end);
 }
 
-constexpr int kBinBits = 5, kMostBins = 1 << kBinBits;
+constexpr int kBinBits = 6, kMostBins = 1 << kBinBits;
 /// Keeps the last centre in the last bin.
 constexpr float kInside = 0.9999f / kMostBins;
 
@@ -106,14 +106,21 @@ HWY_INLINE Plane cheapest_plane(const Bins& bins, const float* side, int count, 
   return plane;
 }
 
-/// Of longer ranges so many items choose the plane, evenly spread along the list.
+HWY_INLINE int bin_count(std::uint32_t length) {
+  return length > 1024 ? kMostBins : length > 48 ? kMostBins / 2 : 8;
+}
+
+/// Of longer ranges so many items choose the plane, evenly spread along the list…
 constexpr std::uint32_t kMostSamples = 1024;
+/// …if none is longer than this share of the range. A few walls among small things decide what a
+/// plane costs, and a sample misses them.
+constexpr float kLargestSampled = 1.0f / 16.0f;
 
 template <class List>
 HWY_INLINE void split_range(const List& list, float scale, const Range& range, Range* left,
                             Range* right) {
   const std::uint32_t length = range.end - range.begin;
-  const int count = length > 48 ? kMostBins : 8;
+  const int count = bin_count(length);
   const auto start = low(range.centres);
   alignas(16) float side[4];
   alignas(16) float factor[4];
@@ -157,7 +164,11 @@ HWY_INLINE void split_range(const List& list, float scale, const Range& range, R
   };
   // Neighbours are often in the same bins and would wait for each other: so from four places.
   const std::uint32_t part = length / 4;
-  const std::uint32_t step = (length + kMostSamples - 1) / kMostSamples;
+  alignas(16) float corner[4];
+  hn::Store(start, Float4(), corner);
+  const float longest = max_of(side[0], max_of(side[1], side[2]));
+  const bool all_small = -corner[3] < kLargestSampled * longest;
+  const std::uint32_t step = all_small ? (length + kMostSamples - 1) / kMostSamples : 1;
   for (std::uint32_t i = 0; i < part; i += step) {
     for (std::uint32_t from = range.begin; from < range.begin + 4 * part; from += part) {
       list.fetch(from + i, step, from + part);

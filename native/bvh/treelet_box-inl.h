@@ -96,6 +96,14 @@ HWY_INLINE Vector4 centre_of(Lanes box) {
   return hn::Sub(hn::Mul(low(box), half), hn::Mul(minus_high(box), half));
 }
 
+/// The centre, and in lane 3 minus the box's longest side. `box` has nothing in its spare lanes.
+HWY_INLINE Vector4 centre_and_side_of(Lanes box) {
+  const auto minus_side = hn::Add(low(box), minus_high(box));
+  const auto pairs = hn::Min(minus_side, hn::Shuffle1032(minus_side));
+  const auto least = hn::Min(pairs, hn::Shuffle2301(pairs));
+  return hn::IfThenElse(hn::FirstN(Float4(), 3), centre_of(box), least);
+}
+
 /// The box of one point.
 HWY_INLINE Lanes point_box(Vector4 p) {
   return make_box(p, hn::Neg(p));

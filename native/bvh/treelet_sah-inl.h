@@ -16,7 +16,7 @@ class SahTreelet {
 
   void build() {
     for (std::uint32_t i = 0; i < t_.count; ++i) {
-      hn::Store(centre_of(load_box(t_.box[i].v)), Float4(), t_.centre[i]);
+      hn::Store(centre_and_side_of(load_box(t_.box[i].v)), Float4(), t_.centre[i]);
     }
     t_.node_count = 1;
     add(0, 0, measure_range(list_, 0, t_.count));

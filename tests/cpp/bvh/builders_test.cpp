@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <random>
 
@@ -173,6 +174,51 @@ TEST(Builders, AreChosenByTheRaysToCome) {
   EXPECT_EQ(choose_builder(1000000, 1e5), Builder::kLinear);
   EXPECT_EQ(choose_builder(1000000, 1e9), Builder::kSah);
   EXPECT_EQ(choose_builder(0, 0.0), Builder::kLinear);
+}
+
+/// Many small things in a few rooms: walls of two triangles among spheres of two hundred.
+TriangleMesh furnished_rooms() {
+  TriangleMesh mesh;
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> number(0.0f, 1.0f);
+  const auto vertex = [&](float x, float y, float z) {
+    mesh.vtx2xyz.insert(mesh.vtx2xyz.end(), {x, y, z});
+    return static_cast<std::uint32_t>(mesh.vtx2xyz.size() / 3 - 1);
+  };
+  const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.tri2vtx.insert(mesh.tri2vtx.end(), {a, b, c, a, c, d});
+  };
+  for (float z = 0.0f; z <= 9.0f; z += 3.0f) {
+    quad(vertex(0, 0, z), vertex(12, 0, z), vertex(12, 12, z), vertex(0, 12, z));
+  }
+  for (float at = 0.0f; at <= 12.0f; at += 4.0f) {
+    quad(vertex(at, 0, 0), vertex(at, 12, 0), vertex(at, 12, 9), vertex(at, 0, 9));
+    quad(vertex(0, at, 0), vertex(12, at, 0), vertex(12, at, 9), vertex(0, at, 9));
+  }
+  for (int i = 0; i < 300; ++i) {
+    const float radius = 0.05f + 0.3f * number(random) * number(random);
+    const float x = 12.0f * number(random), y = 12.0f * number(random), z = 9.0f * number(random);
+    constexpr std::uint32_t kRings = 10;
+    const auto first = static_cast<std::uint32_t>(mesh.vtx2xyz.size() / 3);
+    for (std::uint32_t k = 0; k < (kRings + 1) * kRings; ++k) {
+      const float up = 3.14159f * static_cast<float>(k / kRings) / kRings;
+      const float round = 6.28319f * static_cast<float>(k % kRings) / kRings;
+      vertex(x + radius * std::sin(up) * std::cos(round),
+             y + radius * std::sin(up) * std::sin(round), z + radius * std::cos(up));
+    }
+    for (std::uint32_t k = 0; k < kRings * kRings; ++k) {
+      const std::uint32_t row = first + k / kRings * kRings, a = k % kRings, b = (a + 1) % kRings;
+      quad(row + a, row + kRings + a, row + kRings + b, row + b);
+    }
+  }
+  return mesh;
+}
+
+TEST(Builders, WallsAmongSmallThings) {
+  const TriangleMesh mesh = furnished_rooms();
+  const Items items{mesh.vtx2xyz, mesh.tri2vtx, {}, {kClusterTriangles, kClusterVertices}};
+  const double reference = testing::SahReference(items).cost();
+  EXPECT_LE(testing::wide_cost(build_wide(mesh, Builder::kSah)), 1.02 * reference);
 }
 
 class SahCost : public ::testing::TestWithParam<const char*> {};
