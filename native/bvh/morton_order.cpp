@@ -137,11 +137,12 @@ MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& 
     Scratch<Item> scratch = touched<Item>(total, pool);
     // A code of all ones is that of the last cell of all, too: whatever has it is told apart here.
     radix_sort({order.wide.data(), total}, {scratch.data(), total}, pool, cancel);
-    if (left_out > 0) {
-      std::uint32_t kept = 0;
-      for (std::uint32_t i = 0; i < total; ++i) {
-        if (!items.is_left_out(order.wide[i].index)) order.wide[kept++] = order.wide[i];
-      }
+    const auto* const behind =
+        std::lower_bound(order.wide.begin(), order.wide.end(), ~std::uint64_t{0},
+                         [](const Item& item, std::uint64_t code) { return item.key < code; });
+    auto kept = static_cast<std::uint32_t>(behind - order.wide.begin());
+    for (std::uint32_t i = kept; i < total && left_out > 0; ++i) {
+      if (!items.is_left_out(order.wide[i].index)) order.wide[kept++] = order.wide[i];
     }
   } else {
     order.narrow = touched<KeyIndex<std::uint32_t>>(total, pool);

@@ -87,41 +87,59 @@ void sort_by_passes(std::span<KeyIndex<Key>> items, std::span<KeyIndex<Key>> scr
   if (from.data() != items.data()) std::copy(from.begin(), from.end(), items.begin());
 }
 
-/// Sorts by the lowest `bits`, in this worker's cache, with an odd number of passes: what is in
-/// `from` ends in `to`.
+constexpr std::size_t kFew = 24;  ///< items for which digits do not pay
+
+/// Sorts by the lowest `bits`, by insertion; `to` may be `from`.
+template <class Key>
+void insert_sorted(const KeyIndex<Key>* from, KeyIndex<Key>* to, std::size_t count, unsigned bits) {
+  const Key mask = (Key{1} << bits) - 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    const KeyIndex<Key> item = from[i];
+    std::size_t at = i;
+    for (; at > 0 && (to[at - 1].key & mask) > (item.key & mask); --at) to[at] = to[at - 1];
+    to[at] = item;
+  }
+}
+
+/// Sorts by the lowest `bits`, in this worker's cache: what is in `from` ends in `to`.
 template <class Key>
 void sort_bucket(KeyIndex<Key>* from, KeyIndex<Key>* to, std::size_t count, unsigned bits) {
-  constexpr unsigned kDigitBits = 8;
-  constexpr std::size_t kFew = 24;
-  if (count <= kFew) {
-    const Key mask = (Key{1} << bits) - 1;
-    for (std::size_t i = 0; i < count; ++i) {
-      const KeyIndex<Key> item = from[i];
-      std::size_t at = i;
-      for (; at > 0 && (to[at - 1].key & mask) > (item.key & mask); --at) to[at] = to[at - 1];
-      to[at] = item;
-    }
-    return;
-  }
-  const unsigned passes = (bits + kDigitBits - 1) / kDigitBits | 1u;
-  const unsigned digit_bits = (bits + passes - 1) / passes;
+  constexpr unsigned kDigitBits = 8, kMostPasses = 3;
+  if (count <= kFew) return insert_sorted(from, to, count, bits);
+  // An odd number of passes over the highest bits, which part most items from most others.
+  const unsigned high = std::min(bits, kMostPasses * kDigitBits), low = bits - high;
+  const unsigned passes = (high + kDigitBits - 1) / kDigitBits | 1u;
+  const unsigned digit_bits = (high + passes - 1) / passes;
   const std::size_t digits = std::size_t{1} << digit_bits;
+  KeyIndex<Key>* source = from;
+  KeyIndex<Key>* target = to;
   std::uint32_t next[std::size_t{1} << kDigitBits];
   for (unsigned pass = 0; pass < passes; ++pass) {
-    const unsigned shift = pass * digit_bits;
+    const unsigned shift = low + pass * digit_bits;
+    // The last digit may reach above what is to be sorted by, where the bucket's keys agree.
     const auto digit = [&](Key key) {
       return static_cast<std::size_t>(key >> shift) & (digits - 1);
     };
     std::fill_n(next, digits, 0u);
-    for (std::size_t i = 0; i < count; ++i) ++next[digit(from[i].key)];
+    for (std::size_t i = 0; i < count; ++i) ++next[digit(source[i].key)];
     std::uint32_t place = 0;
     for (std::size_t d = 0; d < digits; ++d) {
       const std::uint32_t size = next[d];
       next[d] = place;
       place += size;
     }
-    for (std::size_t i = 0; i < count; ++i) to[next[digit(from[i].key)]++] = from[i];
-    std::swap(from, to);
+    for (std::size_t i = 0; i < count; ++i) target[next[digit(source[i].key)]++] = source[i];
+    std::swap(source, target);
+  }
+  if (low == 0) return;
+  for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+    for (end = begin + 1; end < count && (to[end].key ^ to[begin].key) >> low == 0;) ++end;
+    if (end - begin <= kFew) {
+      insert_sorted(to + begin, to + begin, end - begin, low);
+    } else {
+      std::copy(to + begin, to + end, from + begin);
+      sort_bucket(from + begin, to + begin, end - begin, low);
+    }
   }
 }
 

@@ -57,6 +57,12 @@ TEST(RadixSort, SortsWhenOnlyOneDigitDiffers) {
   expect_sorted_as_std(random_keys<std::uint64_t>(50000, std::uint64_t{0xff} << 56));
 }
 
+TEST(RadixSort, SortsKeysThatAgreeInTheirMiddle) {
+  // Buckets by the highest bits are then parted no further by the next ones.
+  expect_sorted_as_std(random_keys<std::uint64_t>(200000, 0xffe0000000ffffffu));
+  expect_sorted_as_std(random_keys<std::uint64_t>(200000, 0xffe0000f00000007u));
+}
+
 TEST(RadixSort, StopsWhenCancelled) {
   ThreadPool pool(2);
   Cancel cancel;
