@@ -99,7 +99,7 @@ class Reach {
  public:
   HWY_INLINE Reach(const WalkingRays& walking, const Bundle& bundle, std::uint32_t rays) {
     const RayTag d;
-    RayVec reach[6], origins[6], largest = hn::Zero(d);
+    RayVec reach[6], origins[6], largest[2] = {hn::Zero(d), hn::Zero(d)};
     for (int k = 0; k < 6; ++k) reach[k] = origins[k] = hn::Set(d, -kFloatMax);
     for (std::uint32_t i = 0; i < kBundle && (rays >> i) != 0; i += kRayLanes) {
       const auto used = lanes_of(rays >> i);
@@ -116,12 +116,12 @@ class Reach {
         farthest(reach[3 + axis], hn::Sub(to_begin, last));
         farthest(origins[axis], first);
         farthest(origins[3 + axis], last);
-        farthest(largest, hn::Max(hn::Max(hn::Abs(first), hn::Abs(last)),
-                                  hn::Max(hn::Abs(to_begin), hn::Abs(to_end))));
+        farthest(largest[0], hn::Max(hn::Abs(first), hn::Abs(to_end)));
+        farthest(largest[1], hn::Max(hn::Abs(last), hn::Abs(to_begin)));
       }
     }
-    const float padding = hn::GetLane(hn::MaxOfLanes(d, largest)) * kPadding;
     for (int k = 0; k < 6; ++k) {
+      const float padding = hn::GetLane(hn::MaxOfLanes(d, largest[k / 3])) * kPadding;
       reach_[k] = hn::GetLane(hn::MaxOfLanes(d, reach[k])) + padding;
       origins_[k] = -hn::GetLane(hn::MaxOfLanes(d, origins[k]));
     }
@@ -154,21 +154,18 @@ class Reach {
 
 /// For each child of a node, those of `rays` that meet its box; with kNearest also where the first
 /// of them enters it, or less. For many rays: these stand in lanes, and the boxes take turns.
-/// @param reach  of all the rays that walk; null: everywhere
+/// @param reach  of all the rays that walk
 template <bool kNearest>
 HWY_INLINE void meet_in_lanes(const WideNode& node, const Sides& sides, const WalkingRays& walking,
-                              const Reach* reach, std::uint32_t rays, hn::Vec<MaskTag>* met,
+                              const Reach& reach, std::uint32_t rays, hn::Vec<MaskTag>* met,
                               BoxVec* begins) {
   const RayTag d;
   const BoxTag db;
   const MaskTag dm;
   HWY_ALIGN std::uint32_t met_of[kWidth] = {};
   HWY_ALIGN float begin_of[kWidth];
-  unsigned some = (1u << node.child_count()) - 1, all = 0;
-  if (reach != nullptr) {
-    some &= reach->met_by_some(sides);
-    all = some & reach->met_by_all(sides);
-  }
+  const unsigned some = ((1u << node.child_count()) - 1) & reach.met_by_some(sides);
+  const unsigned all = some & reach.met_by_all(sides);
   for (unsigned left = some; left != 0; left &= left - 1) {
     const auto box = static_cast<std::uint32_t>(__builtin_ctz(left));
     if ((all >> box) & 1u) {

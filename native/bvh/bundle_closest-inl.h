@@ -53,13 +53,15 @@ class Ends {
 /// Sends rays through a tree, near children first: `visit(leaf, rays)` returns those that found
 /// something nearer there.
 template <class Visit, class Address>
-HWY_INLINE void walk_closest(const TreeView& tree, const BundleSlab& slab, std::uint32_t rays,
-                             const Nearest& nearest, const Visit& visit, const Address& address) {
+HWY_INLINE void walk_closest(const TreeView& tree, const Bundle& bundle, const BundleSlab& slab,
+                             std::uint32_t rays, const Nearest& nearest, const Visit& visit,
+                             const Address& address) {
   if (tree.node_count == 0 || rays == 0) return;
   Ends ends(slab, nearest);
-  WalkingRays walking(slab, rays, ends.minus_end());
+  const WalkingRays walking(slab, rays, ends.minus_end());
+  const Reach reach(walking, bundle, rays);
   Waiting waiting;
-  visit_node<true>(tree.nodes[0], walking, nullptr, rays, waiting);
+  visit_node<true>(tree.nodes[0], walking, reach, rays, waiting);
   while (waiting.size > 0) {
     const std::uint32_t child = waiting.child[--waiting.size];
     const std::uint32_t active =
@@ -73,7 +75,7 @@ HWY_INLINE void walk_closest(const TreeView& tree, const BundleSlab& slab, std::
         ends.update(i);
       }
     } else {
-      visit_node<true>(tree.nodes[child], walking, nullptr, active, waiting);
+      visit_node<true>(tree.nodes[child], walking, reach, active, waiting);
     }
   }
 }
@@ -102,7 +104,7 @@ HWY_INLINE std::uint32_t find_in_mesh(const MeshView& mesh, std::uint32_t instan
   };
   while (rays != 0) {
     const std::uint32_t now = same_octant(bundle.slab, rays);
-    walk_closest(mesh.tree, bundle.slab, now, nearest, visit, address);
+    walk_closest(mesh.tree, bundle.rays, bundle.slab, now, nearest, visit, address);
     rays &= ~now;
   }
   return all_found;
@@ -131,7 +133,7 @@ HWY_INLINE void intersect_together(const SceneView& scene, WorldBundle& bundle, 
   };
   while (rays != 0) {
     const std::uint32_t now = same_octant(bundle.slab, rays);
-    walk_closest(scene.tree, bundle.slab, now, nearest, visit, address);
+    walk_closest(scene.tree, bundle.rays, bundle.slab, now, nearest, visit, address);
     rays &= ~now;
   }
 }

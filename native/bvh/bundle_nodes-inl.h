@@ -58,9 +58,9 @@ HWY_INLINE void sort_from(std::uint32_t bottom, Waiting& waiting) {
 
 /// Sends `rays` through a node: every child that one of them meets is pushed, leaves on top, or
 /// with kNearest that which is entered first.
-/// @param reach  of all the rays that walk; null: everywhere
+/// @param reach  of all the rays that walk
 template <bool kNearest>
-HWY_INLINE void visit_node(const WideNode& node, const WalkingRays& walking, const Reach* reach,
+HWY_INLINE void visit_node(const WideNode& node, const WalkingRays& walking, const Reach& reach,
                            std::uint32_t rays, Waiting& waiting) {
   const MaskTag dm;
   const hn::Rebind<std::uint8_t, MaskTag> d8;

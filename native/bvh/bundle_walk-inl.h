@@ -14,7 +14,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// any.
 template <class Visit, class Address>
 HWY_INLINE std::uint32_t walk_bundle(const TreeView& tree, const WalkingRays& walking,
-                                     const Reach* reach, std::uint32_t rays, const Visit& visit,
+                                     const Reach& reach, std::uint32_t rays, const Visit& visit,
                                      const Address& address) {
   if (tree.node_count == 0 || rays == 0) return 0;
   Waiting waiting;
@@ -112,7 +112,7 @@ HWY_INLINE std::uint32_t walk_mesh(const MeshView& mesh, std::uint32_t instance,
     if (left != 0) {
       const WalkingRays walking(bundle.slab, left);
       const Reach reach(walking, bundle.rays, left);
-      found |= walk_bundle(mesh.tree, walking, &reach, left, visit, address);
+      found |= walk_bundle(mesh.tree, walking, reach, left, visit, address);
     }
     rays &= ~now;
   }
@@ -236,7 +236,9 @@ HWY_INLINE std::uint32_t occluded_together(const SceneView& scene, WorldBundle& 
   std::uint32_t found = 0;
   while (rays != 0) {  // all at once: those of a bundle point to one octant
     const std::uint32_t now = same_octant(bundle.slab, rays);
-    found |= walk_bundle(scene.tree, WalkingRays(bundle.slab, now), nullptr, now, visit, address);
+    const WalkingRays walking(bundle.slab, now);
+    const Reach reach(walking, bundle.rays, now);
+    found |= walk_bundle(scene.tree, walking, reach, now, visit, address);
     rays &= ~now;
   }
   return found;
