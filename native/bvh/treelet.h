@@ -32,7 +32,7 @@ struct Treelet {
   std::uint32_t count = 0;
   std::uint32_t node_count = 0;
   WideBox box[kTreeletSize];
-  alignas(16) float centre[kTreeletSize][4];          ///< of the boxes, minus the longest side; by sah()
+  alignas(16) float centre[kTreeletSize][4];          ///< and minus the longest side; by sah()
   alignas(16) std::uint32_t corner[kTreeletSize][4];  ///< vertices of a triangle, and kNone
   std::uint64_t vertex_bits[kTreeletSize];            ///< of its vertices' hashes
   std::uint32_t item[kTreeletSize];                   ///< local index → item
