@@ -1,9 +1,11 @@
 // Which any-hit rays walk together. Included once per instruction set by traverse_simd.cpp, without
 // a guard.
 //
-// Neighbouring rays of like direction meet the same nodes and leaves. So a thousand rays that
+// Neighbouring rays of like direction meet the same nodes and leaves. So four thousand rays that
 // follow each other are sorted by the octant that they point to, and walk in bundles of one octant:
-// half as many visits as with the rays of each point by themselves.
+// half as many visits as with the rays of each point by themselves. Where the leaves that are asked
+// first catch much of a bundle, the rest waits for that of the next ones, and walks in full
+// bundles.
 
 HWY_BEFORE_NAMESPACE();
 namespace komorebi {
@@ -12,7 +14,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-inline constexpr std::uint32_t kSorted = 1024;  ///< rays sorted at a time
+inline constexpr std::uint32_t kSorted = 4096;  ///< rays sorted at a time
 
 /// Where kRayLanes rays come from: their numbers, and those of their points.
 struct Places {
@@ -116,6 +118,62 @@ HWY_INLINE void join_masks(const RayBundles& rays, WorldBundle& bundle, std::uin
   bundle.some_mask = bundle.common_mask = rays.mask;
 }
 
+/// Rays order[0…count − 1] of a block that begins with ray `first`, of which ray first + k leaves
+/// point[k]; reads kRayLanes − 1 more of `order`. Sets the bits of those that are blocked.
+template <class Rays>
+HWY_NOINLINE void occluded_listed(const SceneView& scene, const Rays& rays, std::uint32_t first,
+                                  const std::uint16_t* order, std::uint32_t count,
+                                  const std::int32_t* point, Turn& turn, std::uint32_t* bits) {
+  WorldBundle bundle;
+  for (std::uint32_t k = 0; k < count; k += kRayLanes) {
+    const RayIndexTag di;
+    const hn::Rebind<std::uint16_t, RayTag> d16;
+    const auto place = hn::PromoteTo(di, hn::LoadU(d16, order + k));
+    const Places at = {hn::Add(place, hn::Set(di, static_cast<std::int32_t>(first))),
+                       hn::GatherIndex(di, point, place)};
+    load_rays(rays, at, bundle, k);
+  }
+  join_masks(rays, bundle, count);
+  for (std::uint32_t found = occluded_together(scene, bundle, count, turn); found != 0;
+       found &= found - 1) {
+    const std::uint32_t i = first + order[__builtin_ctz(found)];
+    bits[i / 32] |= 1u << (i % 32);
+  }
+}
+
+/// Repeats the last one of a list of rays behind it, as whole vectors are read.
+HWY_INLINE void close_list(std::uint16_t* list, std::uint32_t size) {
+  for (std::uint32_t k = 0; k < kRayLanes; ++k) list[size + k] = list[size - 1];
+}
+
+/// Rays of one octant, in bundles: list[0…size − 1] of a block, as occluded_listed has it.
+template <class Rays>
+HWY_INLINE void occluded_octant(const SceneView& scene, const Rays& rays, std::uint32_t first,
+                                std::uint16_t* list, std::uint32_t size, const std::int32_t* point,
+                                Blockers& blockers, std::uint32_t* bits) {
+  close_list(list, size);
+  std::uint16_t waiting[2 * kBundle + kRayLanes];  // rays put off
+  std::uint32_t waiting_count = 0;
+  const auto walk_waiting = [&]() HWY_ATTR {
+    const std::uint32_t now = waiting_count < kBundle ? waiting_count : kBundle;
+    close_list(waiting, waiting_count);
+    Turn turn{blockers, false, false};
+    occluded_listed(scene, rays, first, waiting, now, point, turn, bits);
+    waiting_count -= now;
+    for (std::uint32_t k = 0; k < waiting_count; ++k) waiting[k] = waiting[kBundle + k];
+  };
+  for (std::uint32_t begin = 0; begin < size; begin += kBundle) {
+    const std::uint32_t now = size - begin < kBundle ? size - begin : kBundle;
+    Turn turn{blockers, true, scene.instance_count == 1};
+    occluded_listed(scene, rays, first, list + begin, now, point, turn, bits);
+    for (std::uint32_t left = turn.put_off; left != 0; left &= left - 1) {
+      waiting[waiting_count++] = list[begin + static_cast<std::uint32_t>(__builtin_ctz(left))];
+    }
+    if (waiting_count >= kBundle) walk_waiting();
+  }
+  if (waiting_count > 0) walk_waiting();
+}
+
 /// Rays first…first + count − 1, at most kSorted, of which ray first + k leaves point[k];
 /// sets the bits of those that are blocked.
 /// @param blockers  of each octant
@@ -133,28 +191,7 @@ HWY_INLINE void occluded_sorted(const SceneView& scene, const Rays& rays, std::u
   }
   for (std::uint32_t o = 0; o < 8; ++o) {
     if (size[o] == 0) continue;
-    for (std::uint32_t k = 0; k < kRayLanes; ++k) {  // what is behind the last ray repeats it
-      list[o][size[o] + k] = list[o][size[o] - 1];
-    }
-    for (std::uint32_t begin = 0; begin < size[o]; begin += kBundle) {
-      const std::uint32_t now = size[o] - begin < kBundle ? size[o] - begin : kBundle;
-      const std::uint16_t* const order = list[o] + begin;
-      WorldBundle bundle;
-      for (std::uint32_t k = 0; k < now; k += kRayLanes) {
-        const RayIndexTag di;
-        const hn::Rebind<std::uint16_t, RayTag> d16;
-        const auto place = hn::PromoteTo(di, hn::LoadU(d16, order + k));
-        const Places at = {hn::Add(place, hn::Set(di, static_cast<std::int32_t>(first))),
-                           hn::GatherIndex(di, point, place)};
-        load_rays(rays, at, bundle, k);
-      }
-      join_masks(rays, bundle, now);
-      for (std::uint32_t found = occluded_together(scene, bundle, now, blockers[o]); found != 0;
-           found &= found - 1) {
-        const std::uint32_t i = first + order[__builtin_ctz(found)];
-        bits[i / 32] |= 1u << (i % 32);
-      }
-    }
+    occluded_octant(scene, rays, first, list[o], size[o], point, blockers[o], bits);
   }
 }
 

@@ -75,10 +75,20 @@ class Blockers {
   Leaf leaves_[kKept];
 };
 
+inline constexpr int kPutOff = 8;  ///< rays that it takes for the rest to be put off
+
+/// How a bundle walks. Where blockers catch many of its rays, the few that are left are better put
+/// off until there is a bundle of them.
+struct Turn {
+  Blockers& blockers;
+  bool ask;                   ///< the blockers first
+  bool may_put_off;           ///< rays, which only a single instance can
+  std::uint32_t put_off = 0;  ///< rays that blockers did not block and that have not walked
+};
+
 /// Rays of `bundle` that a mesh blocks.
 HWY_INLINE std::uint32_t walk_mesh(const MeshView& mesh, std::uint32_t instance,
-                                   const LocalBundle& bundle, std::uint32_t rays,
-                                   Blockers& blockers) {
+                                   const LocalBundle& bundle, std::uint32_t rays, Turn& turn) {
   const auto test = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
     const std::byte* record = mesh.clusters + std::size_t{leaf} * kClusterUnit;
 #if HWY_TARGET != HWY_SCALAR
@@ -95,7 +105,7 @@ HWY_INLINE std::uint32_t walk_mesh(const MeshView& mesh, std::uint32_t instance,
   };
   const auto visit = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
     const std::uint32_t found = test(leaf, active);
-    blockers.keep(instance, leaf, __builtin_popcount(found));
+    turn.blockers.keep(instance, leaf, __builtin_popcount(found));
     return found;
   };
   const auto address = [&](std::uint32_t child) HWY_ATTR -> const void* {
@@ -106,10 +116,12 @@ HWY_INLINE std::uint32_t walk_mesh(const MeshView& mesh, std::uint32_t instance,
   std::uint32_t found = 0;
   while (rays != 0) {  // all at once unless the instance is turned
     const std::uint32_t now = same_octant(bundle.slab, rays);
-    const std::uint32_t blocked = blockers.block(instance, now, test);
+    const std::uint32_t blocked = turn.ask ? turn.blockers.block(instance, now, test) : 0;
     const std::uint32_t left = now & ~blocked;
     found |= blocked;
-    if (left != 0) {
+    if (turn.may_put_off && __builtin_popcount(blocked) >= kPutOff) {
+      turn.put_off |= left;
+    } else if (left != 0) {
       const WalkingRays walking(bundle.slab, left);
       const Reach reach(walking, bundle.rays, left);
       found |= walk_bundle(mesh.tree, walking, reach, left, visit, address);
@@ -192,14 +204,13 @@ HWY_INLINE std::uint32_t seeing(const InstanceView& instance, const WorldBundle&
 
 /// Those of `rays` that an instance blocks.
 HWY_INLINE std::uint32_t visit_instance(const SceneView& scene, std::uint32_t index,
-                                        const WorldBundle& bundle, std::uint32_t rays,
-                                        Blockers& blockers) {
+                                        const WorldBundle& bundle, std::uint32_t rays, Turn& turn) {
   const InstanceView& instance = scene.instances[index];
   rays = seeing(instance, bundle, rays);
   if (rays == 0) return 0;
   LocalBundle local;
   rays = enter(instance, index, bundle, rays, local);
-  return rays == 0 ? 0 : walk_mesh(scene.meshes[instance.mesh], index, local, rays, blockers);
+  return rays == 0 ? 0 : walk_mesh(scene.meshes[instance.mesh], index, local, rays, turn);
 }
 
 /// Makes the first `count` rays of `bundle` ready for the tree over instances; those that can hit
@@ -222,11 +233,11 @@ HWY_INLINE std::uint32_t prepare(WorldBundle& bundle, std::uint32_t count) {
 
 /// The first `count` rays of `bundle`; a bit for each that is blocked.
 HWY_INLINE std::uint32_t occluded_together(const SceneView& scene, WorldBundle& bundle,
-                                           std::uint32_t count, Blockers& blockers) {
+                                           std::uint32_t count, Turn& turn) {
   std::uint32_t rays = prepare(bundle, count);
   if (rays == 0 || scene.tree.node_count == 0) return 0;
   const auto visit = [&](std::uint32_t entry, std::uint32_t active) HWY_ATTR {
-    return visit_instance(scene, scene.leaf2instance[entry], bundle, active, blockers);
+    return visit_instance(scene, scene.leaf2instance[entry], bundle, active, turn);
   };
   // One instance alone needs no tree: entering it looks at its box anyway.
   if (scene.instance_count == 1) return visit(0, rays);
