@@ -16,6 +16,14 @@ HWY_INLINE Double gather(const double* base, Uint index) {
   return hn::GatherIndex(TagD(), base, hn::BitCast(d, hn::PromoteTo(TagU64(), index)));
 }
 
+/// Asks for base[index], which will be read soon.
+template <class T>
+HWY_INLINE void fetch_soon(const T* base, Uint index) {
+  HWY_ALIGN std::uint32_t at[hn::MaxLanes(TagU())];
+  hn::Store(index, TagU(), at);
+  for (const std::uint32_t i : at) __builtin_prefetch(base + i);
+}
+
 struct SelectionLanes {
   Uint entry;  ///< from `first` on
   Double fraction, probability;
@@ -68,6 +76,18 @@ HWY_INLINE Uint octahedral_cell_lanes(const Vec3Lanes& d, std::uint32_t n) {
   return hn::Add(hn::Mul(row, u32(n)), column);
 }
 
+/// The rows of texels that a patch row lies between; below the lowest and above the highest, which
+/// are half a row at one pole, the map begins anew.
+struct TexelRows {
+  HWY_INLINE TexelRows(const EnvironmentView& e, Uint patch_row)
+      : lowest(hn::Eq(patch_row, u32(0))),
+        highest(hn::Eq(patch_row, u32(e.height))),
+        low(hn::IfThenElse(lowest, u32(e.height - 1), hn::Sub(patch_row, u32(1)))),
+        high(hn::IfThenElse(highest, u32(0), patch_row)) {}
+  hn::Mask<TagU> lowest, highest;
+  Uint low, high;
+};
+
 struct EnvironmentSampleLanes {
   Vec3Lanes direction, radiance;
   Float pdf;
@@ -88,19 +108,16 @@ struct TexelLanes {
 HWY_INLINE EnvironmentSampleLanes sample_patch_lanes(const EnvironmentView& e, Uint row,
                                                      Uint column, Float column_fraction,
                                                      Float row_fraction, Double probability) {
-  const Uint zero = u32(0), one = u32(1);
-  const auto lowest = hn::Eq(row, zero);
-  const auto highest = hn::Eq(row, u32(e.height));
+  const Uint one = u32(1);
+  const TexelRows rows(e, row);
   const Uint next = hn::Add(column, one);
-  const Uint low_row = hn::IfThenElse(lowest, u32(e.height - 1), hn::Sub(row, one));
-  const Uint high_row = hn::IfThenElse(highest, zero, row);
-  const Uint right = hn::IfThenElse(hn::Eq(next, u32(e.width)), zero, next);
-  const TexelLanes low_left(e, low_row, column), low_right(e, low_row, right);
-  const TexelLanes high_left(e, high_row, column), high_right(e, high_row, right);
+  const Uint right = hn::IfThenElse(hn::Eq(next, u32(e.width)), u32(0), next);
+  const TexelLanes low_left(e, rows.low, column), low_right(e, rows.low, right);
+  const TexelLanes high_left(e, rows.high, column), high_right(e, rows.high, right);
 
   const Float half = f32(0.5f);
-  const auto lowest_f = hn::RebindMask(TagF(), lowest);
-  const auto highest_f = hn::RebindMask(TagF(), highest);
+  const auto lowest_f = hn::RebindMask(TagF(), rows.lowest);
+  const auto highest_f = hn::RebindMask(TagF(), rows.highest);
   const Float middle_left = half * low_left.luminance + half * high_left.luminance;
   const Float middle_right = half * low_right.luminance + half * high_right.luminance;
   const Float ll = hn::IfThenElse(lowest_f, middle_left, low_left.luminance);
@@ -194,6 +211,11 @@ class ProductSteps {
       d.across = select_lanes(e_.column_cdf, in_row, hn::Sub(end, first), d.across.fraction);
       d.across.entry = hn::Add(first, d.across.entry);
       d.probability = d.probability * (d.up.probability * d.across.probability);
+      const TexelRows rows(e_, d.up.entry);
+      for (const Uint& row : {rows.low, rows.high}) {
+        const Uint texel = hn::Add(hn::Mul(row, u32(e_.width)), d.across.entry);
+        fetch_soon(e_.texels, hn::Mul(u32(3), texel));
+      }
     }
   }
 
