@@ -146,7 +146,10 @@ void intersect(const SceneView& scene, const RaySpan& rays, Hit* hits) {
       const RayIndexTag di;
       const auto last = hn::Set(di, static_cast<std::int32_t>(first + now - 1));
       const auto ray = hn::Min(hn::Iota(di, static_cast<std::int32_t>(first + k)), last);
-      load_rays(rays, Places{ray, ray}, bundle, k);  // what is behind the last ray repeats it
+      Places at;  // what is behind the last ray repeats it
+      hn::Store(ray, di, at.ray);
+      hn::Store(ray, di, at.point);
+      load_rays(rays, at, bundle, k);
     }
     join_masks(rays, bundle, now);
     Nearest nearest;

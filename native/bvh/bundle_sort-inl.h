@@ -18,25 +18,30 @@ inline constexpr std::uint32_t kSorted = 4096;  ///< rays sorted at a time
 
 /// Where kRayLanes rays come from: their numbers, and those of their points.
 struct Places {
-  hn::Vec<RayIndexTag> ray, point;
+  HWY_ALIGN std::int32_t ray[kRayLanes];
+  HWY_ALIGN std::int32_t point[kRayLanes];
 };
 
+/// What stands at kRayLanes places. (Highway's GatherIndex builds its vector in memory where there
+/// is no instruction for it, and waits for that each time.)
+template <class Number>
+HWY_INLINE void fetch(const Number* from, const std::int32_t* at, Number* to) {
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2
+  const hn::Rebind<Number, RayTag> d;
+  hn::Store(hn::GatherIndex(d, from, hn::Load(RayIndexTag(), at)), d, to);
+#else
+  for (std::uint32_t k = 0; k < kRayLanes; ++k) to[k] = from[at[k]];
+#endif
+}
+
 /// Where the directions of kRayLanes rays stand.
-HWY_INLINE hn::Vec<RayIndexTag> places_of(const RaySpan&, const hn::Vec<RayIndexTag>& ray) {
-  return ray;
-}
-HWY_INLINE hn::Vec<RayIndexTag> places_of(const RayBundles& rays, const hn::Vec<RayIndexTag>& ray) {
-  if (rays.place == nullptr) return ray;
+HWY_INLINE void find_places(const RaySpan&, std::int32_t*) {}
+HWY_INLINE void find_places(const RayBundles& rays, std::int32_t* ray) {
+  if (rays.place == nullptr) return;
+  HWY_ALIGN std::uint32_t place[kRayLanes];
+  fetch(rays.place, ray, place);
   const hn::RebindToUnsigned<RayTag> du;
-  return hn::BitCast(RayIndexTag(), hn::GatherIndex(du, rays.place, ray));
-}
-HWY_INLINE void fetch(const float* from, const hn::Vec<RayIndexTag>& at, float* to) {
-  hn::Store(hn::GatherIndex(RayTag(), from, at), RayTag(), to);
-}
-HWY_INLINE void fetch(const std::uint32_t* from, const hn::Vec<RayIndexTag>& at,
-                      std::uint32_t* to) {
-  const hn::RebindToUnsigned<RayTag> du;
-  hn::Store(hn::GatherIndex(du, from, at), du, to);
+  hn::Store(hn::BitCast(RayIndexTag(), hn::Load(du, place)), RayIndexTag(), ray);
 }
 
 /// What spans and bundles of rays both have; a ray of a span is its own point.
@@ -60,9 +65,9 @@ HWY_INLINE void load_rays(const RaySpan& from, const Places& at, WorldBundle& to
   fetch(from.mask, at.ray, to.mask + k);
 }
 
-HWY_INLINE void load_rays(const RayBundles& from, Places at, WorldBundle& to, std::uint32_t k) {
+HWY_INLINE void load_rays(const RayBundles& from, const Places& at, WorldBundle& to,
+                          std::uint32_t k) {
   const hn::RebindToUnsigned<RayTag> du;
-  at.ray = places_of(from, at.ray);
   load_shared(from, at, to, k);
   hn::Store(hn::Zero(RayTag()), RayTag(), to.rays.t_min + k);
   hn::Store(hn::Set(du, from.mask), du, to.mask + k);
@@ -89,11 +94,12 @@ HWY_INLINE void find_octants(const Rays& rays, std::uint32_t first, std::uint32_
       y = hn::LoadU(d, rays.direction_y + first + k);
       z = hn::LoadU(d, rays.direction_z + first + k);
     } else {
-      const auto ray = hn::Min(hn::Iota(di, static_cast<std::int32_t>(first + k)), last);
-      const auto at = places_of(rays, ray);
-      x = hn::GatherIndex(d, rays.direction_x, at);
-      y = hn::GatherIndex(d, rays.direction_y, at);
-      z = hn::GatherIndex(d, rays.direction_z, at);
+      HWY_ALIGN std::int32_t at[kRayLanes];
+      hn::Store(hn::Min(hn::Iota(di, static_cast<std::int32_t>(first + k)), last), di, at);
+      find_places(rays, at);
+      x = hn::GatherIndex(d, rays.direction_x, hn::Load(di, at));
+      y = hn::GatherIndex(d, rays.direction_y, hn::Load(di, at));
+      z = hn::GatherIndex(d, rays.direction_z, hn::Load(di, at));
     }
     const auto bit = [&](const RayVec& v, std::int32_t value) HWY_ATTR {
       return hn::IfThenElseZero(hn::RebindMask(di, hn::Lt(v, hn::Zero(d))), hn::Set(di, value));
@@ -129,8 +135,12 @@ HWY_NOINLINE void occluded_listed(const SceneView& scene, const Rays& rays, std:
     const RayIndexTag di;
     const hn::Rebind<std::uint16_t, RayTag> d16;
     const auto place = hn::PromoteTo(di, hn::LoadU(d16, order + k));
-    const Places at = {hn::Add(place, hn::Set(di, static_cast<std::int32_t>(first))),
-                       hn::GatherIndex(di, point, place)};
+    HWY_ALIGN std::int32_t in_block[kRayLanes];
+    hn::Store(place, di, in_block);
+    Places at;
+    fetch(point, in_block, at.point);
+    hn::Store(hn::Add(place, hn::Set(di, static_cast<std::int32_t>(first))), di, at.ray);
+    find_places(rays, at.ray);
     load_rays(rays, at, bundle, k);
   }
   join_masks(rays, bundle, count);
