@@ -15,10 +15,10 @@ constexpr std::size_t kFewestPoints = 500;
 constexpr std::uint32_t kRowsPerChunk = 4;  ///< enough rays for the tracer to sort
 
 /// Eight light rays in place of four take 1.5 times the time, and what they leave of the variance
-/// within a camera sample is averaged over the camera samples too. Measured ratios: 1.5 where four
-/// are better by 1.4 times (10,000 dragons in the sun), 1.9 to 2.6 where eight are better by 1.2 to
-/// 2.6 times (docs/performance.md).
-constexpr double kWorthwhile = 1.7;
+/// within a camera sample is averaged over the camera samples too. Measured ratios: 1.2 and 1.5
+/// where four are better (10,000 dragons in the sun), 1.4 where it makes no difference, 1.56 to 2.6
+/// where eight are better by 1.2 to 1.4 times (docs/performance.md).
+constexpr double kWorthwhile = 1.55;
 
 /// The mean over pixels of the variance of a camera sample's radiance with so many light rays,
 /// from two samples a pixel; 0 when cancelled.

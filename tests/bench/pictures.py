@@ -49,6 +49,14 @@ def rmse(picture: np.ndarray, reference: np.ndarray) -> float:
     return float(np.sqrt(np.mean((picture.astype(np.float64) - reference) ** 2)))
 
 
+def as_large(scene: Scene, effort: Effort) -> dict[str, Any]:
+    """Settings of Komorebi's that make its small pictures those of the timed size: what it decides
+    by looking at the picture, which pixels four times as wide would change."""
+    size = effort.size or scene.size
+    done = render.render(scene, "KOMOREBI", size, [(1, 1)], False, {})
+    return {"light_samples": done.light_samples[-1]}
+
+
 def errors(
     scene: Scene, engine: str, truth: np.ndarray, samples: int, settings: dict[str, Any]
 ) -> tuple[float, float]:
@@ -60,13 +68,13 @@ def errors(
 
 
 def fixed_way(
-    scene: Scene, truth: np.ndarray, wanted: float, effort: Effort
+    scene: Scene, truth: np.ndarray, wanted: float, small: dict[str, Any]
 ) -> tuple[Way, list[Any]]:
     """The samples at which Komorebi's error is `wanted`: measured at rising counts until it is
     met, interpolated, rounded up. Also (samples, error) of each."""
     found: list[tuple[int, float]] = []
     for samples in KOMOREBI_SAMPLES:
-        error, _ = errors(scene, "KOMOREBI", truth, samples, {})
+        error, _ = errors(scene, "KOMOREBI", truth, samples, small)
         found.append((samples, error))
         if error <= wanted and len(found) > 1:
             break
@@ -76,14 +84,14 @@ def fixed_way(
 
 
 def adaptive_way(
-    scene: Scene, engine: str, truth: np.ndarray, most: int, wanted: float
+    scene: Scene, engine: str, truth: np.ndarray, most: int, wanted: float, small: dict[str, Any]
 ) -> tuple[Way, list[Any]]:
     """The noise threshold at which the engine's own adaptive sampling has the error `wanted`."""
     found: list[tuple[float, float, float]] = []
     base = {"use_adaptive_sampling": True, "adaptive_min_samples": 0}
     for threshold in ADAPTIVE_THRESHOLDS:
         settings = {**base, "adaptive_threshold": threshold}
-        error, seconds = errors(scene, engine, truth, most, settings)
+        error, seconds = errors(scene, engine, truth, most, {**settings, **small})
         found.append((threshold, error, seconds))
         if error <= wanted and len(found) > 1:
             break
@@ -95,13 +103,19 @@ def adaptive_way(
 
 
 def faster(
-    scene: Scene, engine: str, truth: np.ndarray, fixed: Way, wanted: float
+    scene: Scene,
+    engine: str,
+    truth: np.ndarray,
+    fixed: Way,
+    wanted: float,
+    small: dict[str, Any],
 ) -> tuple[Way, Row]:
     """`fixed` or, where it takes less time at the small size and its error is no larger, adaptive
     sampling."""
-    adaptive, tried = adaptive_way(scene, engine, truth, ADAPTIVE_FACTOR * fixed.samples, wanted)
-    _, fixed_seconds = errors(scene, engine, truth, fixed.samples, fixed.settings)
-    error, seconds = errors(scene, engine, truth, adaptive.samples, adaptive.settings)
+    most = ADAPTIVE_FACTOR * fixed.samples
+    adaptive, tried = adaptive_way(scene, engine, truth, most, wanted, small)
+    _, fixed_seconds = errors(scene, engine, truth, fixed.samples, {**fixed.settings, **small})
+    error, seconds = errors(scene, engine, truth, adaptive.samples, {**adaptive.settings, **small})
     # An adaptive render that misses the error by little is credited with the time to meet it.
     fair = seconds * max(1.0, (error / wanted) ** 2)
     figures = {"tried": tried, "seconds": seconds, "error": error, "fixed_seconds": fixed_seconds}
@@ -123,13 +137,18 @@ def measure_scene(scene: Scene, effort: Effort) -> Row:
     say(f"pictures: {scene.name}: errors")
     cycles = Way(f"{scene.samples} samples", scene.samples, {})
     wanted, _ = errors(scene, "CYCLES", truth["CYCLES"], cycles.samples, {})
-    ours, tried = fixed_way(scene, truth["KOMOREBI"], wanted, effort)
-    row: Row = {"scene": scene.name, "rmse": wanted, "komorebi_errors": tried}
+    small = as_large(scene, effort)
+    ours, tried = fixed_way(scene, truth["KOMOREBI"], wanted, small)
+    row: Row = {"scene": scene.name, "rmse": wanted, "komorebi_errors": tried, **small}
     row |= {"disagreeing_percent": 100.0 * verdict.share, "agree": verdict.passed}
     row |= {"mean_difference_in_standard_errors": verdict.mean_errors}
     if not effort.quick:
-        cycles, row["cycles_adaptive"] = faster(scene, "CYCLES", truth["CYCLES"], cycles, wanted)
-        ours, row["komorebi_adaptive"] = faster(scene, "KOMOREBI", truth["KOMOREBI"], ours, wanted)
+        cycles, row["cycles_adaptive"] = faster(
+            scene, "CYCLES", truth["CYCLES"], cycles, wanted, {}
+        )
+        ours, row["komorebi_adaptive"] = faster(
+            scene, "KOMOREBI", truth["KOMOREBI"], ours, wanted, small
+        )
     row |= {"cycles": cycles.name, "komorebi": ours.name}
     row |= time_scene(scene, cycles, ours, effort, truth)
     return row

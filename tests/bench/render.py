@@ -29,12 +29,14 @@ class Failed(RuntimeError):
 
 @dataclass(frozen=True)
 class Outcome:
-    """Seconds of each run's render operator and of the whole process; the kept pictures."""
+    """Seconds of each run's render operator and of the whole process; the kept pictures; the light
+    samples that Komorebi decided on."""
 
     seconds: list[float]
     process: float
     notes: list[str]
     pictures: list[np.ndarray]
+    light_samples: list[int]
 
 
 def small_size(scene: Scene) -> tuple[int, int]:
@@ -91,7 +93,7 @@ def render(
     report = json.loads(out.read_text(encoding="utf-8"))
     pictures = [np.load(path) for path in kept if path is not None]
     shutil.rmtree(folder)
-    return Outcome(report["seconds"], seconds, report["notes"], pictures)
+    return Outcome(report["seconds"], seconds, report["notes"], pictures, report["light_samples"])
 
 
 def module_version() -> str:

@@ -6,7 +6,8 @@ JOB.json holds file, engine, mode (ao, world), world_image, width, height, views
 camera; n: that many cameras on a circle around the scene's middle), cycles and komorebi (settings
 over those of `compare`), runs (a list of samples, seed and keep, the .npy file that takes the
 picture or null) and out, the file that takes the report: seconds of each run's render operator and
-of opening and preparing, notes on what was switched off, release. Pictures are float32 [row,
+of opening and preparing, notes on what was switched off, release, and the light samples that
+Komorebi decided on. Pictures are float32 [row,
 column, RGB], row 0 at the bottom, scene linear.
 """
 
@@ -80,6 +81,22 @@ def render(scene: Any, run: dict[str, Any], places: list[Matrix]) -> float:
     return seconds
 
 
+def watch_light_samples() -> list[int]:
+    """The light rays a camera sample of each render of Komorebi's to come, as it decides them."""
+    from komorebi import driver
+
+    told: list[int] = []
+    update = driver.Progress.update
+
+    def watched(self: Any, session: Any, final: bool = False) -> None:
+        update(self, session, final=final)
+        if final:
+            told.append(session.resolved["light_samples"])
+
+    driver.Progress.update = watched
+    return told
+
+
 def main() -> None:
     """Do the job named on the command line."""
     start = time.perf_counter()
@@ -104,11 +121,13 @@ def main() -> None:
     # Both keep what outlives a frame where several frames of one scene follow each other.
     settle_all(scene.render, use_persistent_data=job["views"] > 0)
     places = cameras(scene, job["views"]) if job["views"] else []
+    light_samples = watch_light_samples() if job["engine"] == "KOMOREBI" else []
     report: dict[str, Any] = {"prepare": time.perf_counter() - start, "seconds": []}
     for run in job["runs"]:
         set_samples(scene, job["engine"], run["samples"], run["seed"])
         report["seconds"].append(render(scene, run, places))
     report |= {"notes": notes + more, "blender": bpy.app.version_string}
+    report |= {"light_samples": light_samples}
     Path(job["out"]).write_text(json.dumps(report), encoding="utf-8")
 
 
