@@ -56,6 +56,12 @@ void unmap_pages(void* pages, std::size_t) {
   ::operator delete (pages, std::align_val_t{kHugePage});
 }
 
+void back_pages(void*, std::size_t) {}
+
+std::size_t trim_pages(void*, std::size_t bytes, std::size_t) {
+  return bytes;  // operator delete takes the whole
+}
+
 #endif
 
 }  // namespace komorebi

@@ -18,8 +18,8 @@ void* map_pages(std::size_t bytes);
 void unmap_pages(void* pages, std::size_t bytes);
 /// Has memory put behind pages that may be written already, where the system can do that.
 void back_pages(void* pages, std::size_t bytes);
-/// Gives back what lies behind the first `kept` bytes; returns how many are left to unmap, at most
-/// a small page more.
+/// Gives back what lies behind the first `kept` bytes, where the system can do that; returns how
+/// many are left to unmap: at most a small page more, or all.
 std::size_t trim_pages(void* pages, std::size_t bytes, std::size_t kept);
 
 }  // namespace komorebi
