@@ -26,6 +26,27 @@ class CoarseNodes {
   Lanes growth_;
 };
 
+/// Areas, whose order is that of their bits; the lowest tell equal ones apart.
+HWY_INLINE std::int32_t area_key(float area, std::uint32_t inner, int index) {
+  const std::uint32_t bits = std::bit_cast<std::uint32_t>(area), last_bits = kPlanWidth - 1;
+  return static_cast<std::int32_t>(((bits | inner) & ~last_bits) |
+                                   static_cast<std::uint32_t>(index));
+}
+
+/// Where each key stands when they are sorted.
+HWY_INLINE void store_places(const std::int32_t* key, std::uint32_t* place) {
+  const hn::CappedTag<std::int32_t, kPlanWidth> d;
+  const hn::RebindToUnsigned<decltype(d)> du;
+  for (std::size_t first = 0; first < kPlanWidth; first += hn::Lanes(d)) {
+    const auto keys = hn::Load(d, key + first);
+    auto places = hn::Zero(d);
+    for (int k = 0; k < kPlanWidth; ++k) {
+      places = hn::Sub(places, hn::VecFromMask(d, hn::Lt(hn::Set(d, key[k]), keys)));
+    }
+    hn::StoreU(hn::BitCast(du, places), du, place + first);
+  }
+}
+
 struct PlannedChildren {
   int count, inner;
 };
@@ -34,13 +55,13 @@ struct PlannedChildren {
 /// (bvh/wide_plan.h): inner ones first, of either kind the larger ones last.
 HWY_INLINE PlannedChildren planned_children(const BinaryNode* nodes, std::uint32_t node,
                                             std::uint32_t* children) {
-  const hn::CappedTag<std::int32_t, kPlanWidth> d;
   const CoarseNodes is_coarse = CoarseNodes::within(nodes[node]);
   OpenNodes open(nodes);
   open.push_wide(node);
   PlannedChildren planned{0, 0};
   std::uint32_t all[kPlanWidth];
-  alignas(32) std::int32_t key[kPlanWidth], place[kPlanWidth];
+  alignas(32) std::int32_t key[kPlanWidth];
+  std::uint32_t place[kPlanWidth];
   for (std::int32_t& k : key) k = std::numeric_limits<std::int32_t>::max();
   std::uint32_t next = 0;
   int room = 0, size = 0;
@@ -51,42 +72,33 @@ HWY_INLINE PlannedChildren planned_children(const BinaryNode* nodes, std::uint32
       continue;
     }
     all[planned.count] = next;
-    // Areas, whose order is that of their bits; the lowest tell equal ones apart.
-    const std::uint32_t area = std::bit_cast<std::uint32_t>(area_of(node_box(child), 1.0f));
-    const std::uint32_t inner = child.is_leaf() ? 0 : kInnerBit;
-    const std::uint32_t last_bits = kPlanWidth - 1;
-    key[planned.count] = static_cast<std::int32_t>(((area | inner) & ~last_bits) |
-                                                   static_cast<std::uint32_t>(planned.count));
+    key[planned.count] = area_key(area_of(node_box(child), 1.0f), child.is_leaf() ? 0 : kInnerBit,
+                                  planned.count);
     planned.inner += child.is_leaf() ? 0 : 1;
     ++planned.count;
   }
-  for (std::size_t first = 0; first < kPlanWidth; first += hn::Lanes(d)) {
-    const auto keys = hn::Load(d, key + first);
-    auto places = hn::Zero(d);
-    for (int k = 0; k < planned.count; ++k) {
-      const auto before = hn::VecFromMask(d, hn::Lt(hn::Set(d, key[k]), keys));
-      places = hn::Sub(places, before);
-    }
-    hn::Store(places, d, place + first);
-  }
+  store_places(key, place);
   for (int i = 0; i < planned.count; ++i) children[place[i]] = all[i];
   return planned;
 }
 
-/// What a leaf holds: items, and corners as LeafCorners wants them.
+/// What a leaf holds: primitives, and their corners as LeafCorners wants them.
 struct LeafItems {
-  std::uint32_t item[kClusterTriangles];
-  const std::uint32_t* corner[kClusterTriangles];
+  alignas(64) Corners4 corner[kClusterTriangles];
+  std::uint32_t primitive[kClusterTriangles];
 };
 
 /// Leaves of a treelet.
 struct TreeletLeaves {
   const Treelet& t;
-  HWY_INLINE void get(const BinaryNode& leaf, LeafItems& to) {
-    for (std::uint32_t i = 0; i < leaf.leaf_count(); ++i) {
-      const std::uint32_t id = t.ids[leaf.first + i];
-      to.item[i] = t.item[id];
-      to.corner[i] = t.corner[id];
+  HWY_INLINE void get(const BinaryNode& leaf, LeafItems& to) const {
+    const hn::FixedTag<std::uint32_t, 4> d;
+    for (std::uint32_t i = leaf.first, at = 0; at < leaf.leaf_count(); ++i) {
+      const std::uint32_t start = t.start[t.ids[i]], end = start + t.triangles[t.ids[i]];
+      for (std::uint32_t k = start; k < end; ++k, ++at) {
+        hn::Store(hn::Load(d, t.corner[k]), d, to.corner[at]);
+        to.primitive[at] = t.primitive[k];
+      }
     }
   }
 };
@@ -95,16 +107,14 @@ struct TreeletLeaves {
 struct TreeLeaves {
   const Items& items;
   const std::uint32_t* order;
-  alignas(16) std::uint32_t corner[kClusterTriangles][4] = {};
-  void get(const BinaryNode& leaf, LeafItems& to) {
+  void get(const BinaryNode& leaf, LeafItems& to) const {
     for (std::uint32_t i = 0; i < leaf.leaf_count(); ++i) {
-      to.item[i] = order[leaf.first + i];
-      to.corner[i] = corner[i];
+      to.primitive[i] = order[leaf.first + i];
       if (!items.are_triangles()) continue;
       for (std::size_t k = 0; k < 3; ++k) {
-        corner[i][k] = items.tri2vtx[3 * std::size_t{to.item[i]} + k];
+        to.corner[i][k] = items.tri2vtx[3 * std::size_t{to.primitive[i]} + k];
       }
-      corner[i][3] = kNone;
+      to.corner[i][3] = kNone;
     }
   }
 };
@@ -113,7 +123,7 @@ template <class Leaves>
 class Emitter {
  public:
   Emitter(const Items& items, const BinaryNode* nodes, Leaves& leaves, WideTreelet& to)
-      : items_(items), nodes_(nodes), leaves_(leaves), to_(to) {}
+      : items_(items), vertex_(items), nodes_(nodes), leaves_(leaves), to_(to) {}
 
   /// Nodes go to to.root_nodes and behind, leaves to to.root_leaves and behind.
   void emit() {
@@ -169,22 +179,23 @@ class Emitter {
     leaves_.get(leaf, its);
     std::byte* const record = to_.leaves + to_.leaf_units * items_.leaf_unit();
     if (items_.are_triangles()) {
-      const auto corner = [&](std::uint32_t i) { return its.corner[i]; };
-      write_cluster(items_.vtx2xyz.data(), leaf.leaf_count(), leaf.leaf_vertices(), corner,
-                    its.item, record);
+      const std::uint32_t firsts = LeafCorners(its.corner).firsts(leaf.leaf_count());
+      write_cluster(vertex_, leaf.leaf_count(), its.corner, firsts, its.primitive, record);
     } else {
-      std::memcpy(record, its.item, sizeof(its.item[0]));
+      std::memcpy(record, its.primitive, sizeof(its.primitive[0]));
     }
     to_.leaf_units += items_.leaf_units(leaf.leaf_count(), leaf.leaf_vertices());
   }
 
   const Items& items_;
+  const VertexReader vertex_;
   const BinaryNode* nodes_;
   Leaves& leaves_;
   WideTreelet& to_;
 };
 
-void emit_treelet(const Items& items, float scale, Treelet& t, WideTreelet& to) {
+void sah_treelet(const Items& items, float scale, Treelet& t, WideTreelet& to) {
+  SahTreelet(items.leaf, scale, t).build();
   plan(scale, t);
   TreeletLeaves leaves{t};
   Emitter<TreeletLeaves>(items, t.nodes, leaves, to).emit();

@@ -83,7 +83,8 @@ void Grove::give_rooms(std::uint32_t node) {
   }
 }
 
-void Grove::grow(std::uint32_t treelets, FunctionRef<void(std::uint32_t, Treelet&)> build) {
+void Grove::grow(std::uint32_t treelets, FunctionRef<void(std::uint32_t, Treelet&)> load,
+                 void (*make)(const Items&, float, Treelet&, WideTreelet&)) {
   if (!is_planned_) prepare(treelets);
   row_.emplace(items_, std::span(treelets_.data(), treelets));
   std::atomic<std::uint32_t> next{0};
@@ -91,10 +92,9 @@ void Grove::grow(std::uint32_t treelets, FunctionRef<void(std::uint32_t, Treelet
     Scratch<Treelet> desk(1);
     Treelet& t = desk[0];
     for (std::uint32_t i = next++; i < treelets && !cancel_.raised(); i = next++) {
-      t.count = 0;
-      build(i, t);
-      TreeletRow::Shelf shelf = row_->take_shelf(i, t.count);
-      kernel_.emit_treelet(items_, scale_, t, treelets_[i]);
+      load(i, t);
+      TreeletRow::Shelf shelf = row_->take_shelf(i, t.triangle_count);
+      make(items_, scale_, t, treelets_[i]);
       row_->put(i, std::move(shelf));
     }
   });

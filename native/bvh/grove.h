@@ -35,9 +35,10 @@ class Grove {
   /// have their boxes. Then treelets give as many roots to the wide nodes above them as pays.
   void plan_top(std::uint32_t treelets);
 
-  /// All treelets: `build(index, desk)` leaves one on an empty desk, without boxes of inner nodes.
-  /// @throws Cancelled
-  void grow(std::uint32_t treelets, FunctionRef<void(std::uint32_t, Treelet&)> build);
+  /// All treelets: `load(index, desk)` puts its items on the desk, `make` is the kernel's function
+  /// that makes nodes of them. @throws Cancelled
+  void grow(std::uint32_t treelets, FunctionRef<void(std::uint32_t, Treelet&)> load,
+            void (*make)(const Items&, float, Treelet&, WideTreelet&));
 
   /// One treelet from a whole planned tree, of any size.
   void transplant(const BinaryTree& tree);

@@ -11,8 +11,8 @@ WideTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cancel)
   if (order.count > 0) {
     RunTree top;
     top.cut(order, kRunSize);
-    Grove grove(items, static_cast<std::uint32_t>(top.runs.size()),
-                1.0f / max_of(order.largest_side, 1e-30f), pool, cancel);
+    const float scale = 1.0f / max_of(order.largest_side, 1e-30f);
+    Grove grove(items, static_cast<std::uint32_t>(top.runs.size()), scale, pool, cancel);
     for (std::uint32_t i = 0; i < top.nodes.size(); ++i) {
       const RunTree::Node& node = top.nodes[i];
       if (node.is_run) {
@@ -23,12 +23,12 @@ WideTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cancel)
       }
     }
     const BuildKernel& kernel = build_kernel();
-    grove.grow(static_cast<std::uint32_t>(top.runs.size()), [&](std::uint32_t i, Treelet& t) {
-      std::uint32_t run[kRunSize];
-      order.copy_run(top.runs[i], run, t.code);
-      kernel.load(items, run, top.runs[i].count, t);
-      kernel.linear(items.leaf, 0.0f, t);
-    });
+    const auto load = [&](std::uint32_t i, Treelet& t) {
+      KeyIndex<std::uint32_t> room[kRunSize];
+      const Run run = top.runs[i];
+      kernel.load_codes(items, order.narrow_run(run, room), run.count, false, t);
+    };
+    grove.grow(static_cast<std::uint32_t>(top.runs.size()), load, kernel.pack_treelet);
     wide = grove.finish();
   }
   wide.left_out = order.left_out;

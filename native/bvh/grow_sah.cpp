@@ -15,10 +15,8 @@
 namespace komorebi {
 namespace {
 
-/// With eight the tree costs up to 1 % more and takes a tenth less time to build.
-constexpr LeafLimit kClusterLimit{4, kNone};
 /// Clusters larger than so many median items are broken up: they would blunt the top's planes.
-constexpr float kLargestCluster = 32.0f;
+constexpr float kLargestCluster = 8.0f;
 /// Ranges of fewer clusters are finished by the worker that met them.
 constexpr std::uint32_t kSmallRange = 4096;
 /// Deepest level of the top that is split by area; then halves, at most 27 levels.
@@ -40,11 +38,9 @@ class SahBuilder {
         kernel_(build_kernel()),
         scale_(1.0f / max_of(order.largest_side, 1e-30f)),
         grove_(items, order.count, scale_, pool, cancel),
-        sorted_(order.count),
-        cluster_(order.count) {
-    touch_pages(sorted_.data(), sorted_.size() * sizeof(std::uint32_t), pool);
+        moved_(order.count) {
     // About so many clusters there will be.
-    touch_pages(cluster_.data(), cluster_.size() / 3 * sizeof(BinaryNode), pool);
+    touch_pages(moved_.data(), moved_.size() / 2 * sizeof(BinaryNode), pool);
   }
 
   WideTree build() {
@@ -56,60 +52,54 @@ class SahBuilder {
 
  private:
   void find_clusters() {
-    RunTree top;
-    top.cut(order_, kRunSize);
-    std::vector<std::uint32_t> base(top.runs.size()), count(top.runs.size());
+    const std::size_t runs = (order_.count + kRunSize - 1) / kRunSize;
+    std::vector<std::uint32_t> base(runs), count(runs);
     std::atomic<std::uint32_t> next{0};
-    pool_.for_each_chunk(top.runs.size(), 4, [&](std::size_t begin, std::size_t end) {
+    pool_.for_each_chunk(runs, 4, [&](std::size_t begin, std::size_t end) {
       Scratch<Treelet> desk(1);
       Treelet& t = desk[0];
       for (std::size_t i = begin; i < end && !cancel_.raised(); ++i) {
-        const Run run = top.runs[i];
-        std::uint32_t* const sorted = &sorted_[run.first];
-        order_.copy_run(run, sorted, t.code);
-        t.count = 0;
-        kernel_.load_boxes(items_, sorted, run.count, t);
-        kernel_.linear(kClusterLimit, kLargestCluster * order_.sample_area, t);
-        for (std::uint32_t k = 0; k < run.count; ++k) sorted[k] = t.item[t.ids[k]];
-        for (std::uint32_t k = 0; k < t.node_count; ++k) count[i] += t.nodes[k].is_leaf() ? 1u : 0u;
-        std::uint32_t to = base[i] = next.fetch_add(count[i]);
-        for (std::uint32_t k = 0; k < t.node_count; ++k) {
-          if (!t.nodes[k].is_leaf()) continue;
-          cluster_[to] = t.nodes[k];
-          cluster_[to++].first += run.first;
-        }
+        const auto first = static_cast<std::uint32_t>(i) * kRunSize;
+        const Run run{first, std::min(kRunSize, order_.count - first)};
+        KeyIndex<std::uint32_t> room[kRunSize];
+        kernel_.load_codes(items_, order_.narrow_run(run, room), run.count, true, t);
+        BinaryNode found[kRunSize];
+        count[i] =
+            kernel_.cluster(kLargestCluster * order_.sample_area, scale_, first, t, found);
+        base[i] = next.fetch_add(count[i]);
+        std::copy_n(found, count[i], &moved_[base[i]]);
       }
     });
     check(cancel_);
-    cluster_count_ = next;
-    ids_ = Scratch<std::uint32_t>(cluster_count_);
-    moved_ = Scratch<std::uint32_t>(cluster_count_);
     list_clusters(base, count);
   }
 
-  /// Run by run, each with the clusters from base[i] on, and what all of them span.
+  /// Run by run, as their order would depend on the threads, and what all of them span.
   void list_clusters(const std::vector<std::uint32_t>& base,
                      const std::vector<std::uint32_t>& count) {
     std::vector<std::uint32_t> place(base.size() + 1, 0);
     for (std::size_t i = 0; i < base.size(); ++i) place[i + 1] = place[i] + count[i];
+    cluster_count_ = place.back();
+    cluster_ = Scratch<BinaryNode>(cluster_count_);
+    touch_pages(cluster_.data(), cluster_count_ * sizeof(BinaryNode), pool_);
     all_ = {0, cluster_count_, 0, {}};
     std::fill_n(all_.centres.v, 8, kFloatMax);
     std::mutex mutex;
     pool_.for_each_chunk(base.size(), 32, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        for (std::uint32_t k = 0; k < count[i]; ++k) ids_[place[i] + k] = base[i] + k;
+        std::copy_n(&moved_[base[i]], count[i], &cluster_[place[i]]);
       }
       ClusterRange part{place[begin], place[end], 0, {}};
       kernel_.measure(clusters(), part);
       const std::lock_guard lock(mutex);
-      all_.items += part.items;
+      all_.triangles += part.triangles;
       for (int k = 0; k < 8; ++k) {
         all_.centres.v[k] = min_of(all_.centres.v[k], part.centres.v[k]);
       }
     });
   }
 
-  Clusters clusters() { return {cluster_.data(), ids_.data(), moved_.data()}; }
+  Clusters clusters() { return {cluster_.data(), moved_.data()}; }
 
   void split_top() {
     treelets_ = Scratch<ClusterRange>(cluster_count_);
@@ -130,7 +120,7 @@ class SahBuilder {
 
   /// Parts a range until it is a treelet; `large`, if any, takes the two parts that others may do.
   void split(const Part& part, Part* large) {
-    if (part.range.items <= kTreeletSize) {
+    if (part.range.triangles <= kTreeletSize) {
       const std::uint32_t treelet = treelet_count_.fetch_add(1);
       treelets_[treelet] = part.range;
       grove_.mark_treelet(part.node, treelet);
@@ -177,17 +167,20 @@ class SahBuilder {
     order.reserve(treelet_count_);
     number_treelets(0, order);
     grove_.plan_top(treelet_count_);
-    grove_.grow(treelet_count_, [&](std::uint32_t i, Treelet& t) {
+    const auto load = [&](std::uint32_t i, Treelet& t) {
       const ClusterRange& range = treelets_[order[i]];
-      std::uint32_t items[kTreeletSize], count = 0;
+      KeyIndex<std::uint32_t> strips[kTreeletSize];
+      std::uint32_t count = 0;
       for (std::uint32_t c = range.begin; c < range.end; ++c) {
-        const BinaryNode& cluster = cluster_[ids_[c]];
-        for (std::uint32_t k = 0; k < cluster.info; ++k)
-          items[count++] = sorted_[cluster.first + k];
+        const BinaryNode& cluster = cluster_[c];
+        const ClusterInfo info(cluster.info);
+        for (std::uint32_t k = 0; k < info.strips; ++k) {
+          strips[count++] = {info.joined >> k & 1u, order_.strip(cluster.first + k)};
+        }
       }
-      kernel_.load(items_, items, count, t);
-      kernel_.sah(items_.leaf, scale_, t);
-    });
+      kernel_.load(items_, strips, count, t);
+    };
+    grove_.grow(treelet_count_, load, kernel_.sah_treelet);
   }
 
   const Items& items_;
@@ -197,10 +190,9 @@ class SahBuilder {
   const BuildKernel& kernel_;
   float scale_;
   Grove grove_;
-  Scratch<std::uint32_t> sorted_;  ///< items along the curve
-  Scratch<BinaryNode> cluster_;    ///< first and info: a run of sorted_
+  Scratch<BinaryNode> moved_;    ///< at first clusters as they were found
+  Scratch<BinaryNode> cluster_;  ///< `first`: in the order along the curve
   std::uint32_t cluster_count_ = 0;
-  Scratch<std::uint32_t> ids_, moved_;
   ClusterRange all_;
   Scratch<ClusterRange> treelets_;
   std::atomic<std::uint32_t> treelet_count_{0};

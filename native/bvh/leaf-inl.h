@@ -6,34 +6,94 @@ namespace komorebi {
 namespace HWY_NAMESPACE {
 namespace {
 
+/// Four numbers a triangle: its vertices, and kNone.
+using Corners4 = std::uint32_t[4];
+
+/// Vertex k as a triangle's corner: a lane each, as ClusterView::corners packs them.
+struct CornerPlaces {
+  alignas(64) std::uint32_t of[kClusterVertices][16];
+  constexpr CornerPlaces() : of() {
+    for (std::uint32_t k = 0; k < kClusterVertices; ++k) {
+      for (std::uint32_t lane = 0; lane < 16; ++lane) {
+        of[k][lane] = lane % 4 < 3 ? k << (3 * (lane % 4)) : 0;
+      }
+    }
+  }
+};
+constexpr CornerPlaces kCornerPlaces;
+
 /// Corners of up to eight triangles in lanes: corner k of triangle i is lane 4i + k.
 class LeafCorners {
  public:
-  /// @param corner  returns triangle i's three corners and kNone, 16-byte aligned
-  template <class Corner>
-  HWY_INLINE LeafCorners(std::uint32_t count, const Corner& corner)
-      : vectors_((4 * count + kLanes - 1) / kLanes) {
-    for (std::uint32_t v = 0; v < vectors_; ++v) {
-      lanes_[v] = triangles(v * kLanes / 4, count, corner);
+  /// @param corner  [8], whatever stands behind those that are used
+  HWY_INLINE explicit LeafCorners(const Corners4* corner) : corner_(corner[0]) {
+    for (std::uint32_t v = 0; v < kVectors; ++v) {
+      lanes_[v] = hn::LoadU(Tag(), corner_ + v * kLanes);
     }
   }
 
-  /// The lanes that hold this vertex, one bit each.
-  HWY_INLINE std::uint32_t where(std::uint32_t vertex) const {
-    const auto wanted = hn::Set(Tag(), vertex);
-    std::uint32_t bits = mask_bits(hn::Eq(lanes_[0], wanted));
-    for (std::uint32_t v = 1; v < vectors_; ++v) {
-      bits |= mask_bits(hn::Eq(lanes_[v], wanted)) << (v * kLanes);
+  /// The first corner of each vertex, one bit each.
+  HWY_INLINE std::uint32_t firsts(std::uint32_t count) const {
+    std::uint32_t bits = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t same = where(corner_[4 * i + k]);
+        bits |= same & (0u - same);
+      }
     }
     return bits;
   }
 
+  /// Vertices of up to eight first corners: [8] indices in the mesh, the last one over and over.
+  static HWY_INLINE void list_vertices(const std::uint32_t* corner, std::uint32_t firsts,
+                                       std::uint32_t* to) {
+    std::uint32_t lane = 0;
+    for (std::uint32_t k = 0; k < kClusterVertices; ++k, firsts &= firsts - 1) {
+      lane = firsts != 0 ? static_cast<std::uint32_t>(std::countr_zero(firsts)) : lane;
+      to[k] = corner[lane];
+    }
+  }
+
+  /// Eight 16-bit entries as ClusterView::corners has them, null behind the last triangle.
+  /// @param vertex  as list_vertices() lists them
+  HWY_INLINE void store(const std::uint32_t* vertex, std::uint32_t count, std::byte* to) const {
+    const Tag d;
+    Indices place[kVectors];
+    for (auto& p : place) p = hn::Zero(d);
+    // Of equal ones the first counts.
+    for (std::uint32_t k = kClusterVertices; k-- > 0;) {
+      const auto wanted = hn::Set(d, vertex[k]), its = hn::Load(d, kCornerPlaces.of[k]);
+      for (std::uint32_t v = 0; v < kVectors; ++v) {
+        place[v] = hn::IfThenElse(hn::Eq(lanes_[v], wanted), its, place[v]);
+      }
+    }
+    alignas(64) std::uint32_t packed[32];
+    for (std::uint32_t v = 0; v < kVectors; ++v) {
+      const auto pairs = hn::Or(place[v], hn::Shuffle2301(place[v]));
+      hn::Store(hn::Or(pairs, hn::Shuffle1032(pairs)), d, packed + v * kLanes);
+    }
+    for (std::uint32_t i = 0; i < kClusterTriangles; ++i) {
+      const auto three = static_cast<std::uint16_t>(i < count ? packed[4 * i] : 0);
+      std::memcpy(to + 2 * std::size_t{i}, &three, 2);
+    }
+  }
+
  private:
   using Tag = hn::CappedTag<std::uint32_t, 16>;
-  using Mask = hn::Mask<Tag>;
+  using Indices = hn::Vec<Tag>;
   static constexpr std::uint32_t kLanes = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
+  static constexpr std::uint32_t kVectors = 32 / kLanes;
 
-  static HWY_INLINE std::uint32_t mask_bits(Mask mask) {
+  /// The corners that have this vertex; what is behind the last triangle comes last.
+  HWY_INLINE std::uint32_t where(std::uint32_t vertex) const {
+    const auto wanted = hn::Set(Tag(), vertex);
+    std::uint32_t bits = 0;
+    for (std::uint32_t v = 0; v < kVectors; ++v) {
+      bits |= mask_bits(hn::Eq(lanes_[v], wanted)) << (v * kLanes);
+    }
+    return bits;
+  }
+  static HWY_INLINE std::uint32_t mask_bits(hn::Mask<Tag> mask) {
     std::uint8_t bytes[8];
     hn::StoreMaskBits(Tag(), mask, bytes);
     if constexpr (kLanes < 16) return bytes[0];
@@ -42,98 +102,84 @@ class LeafCorners {
     return bits;
   }
 
-  /// The vector from triangle `first` on; behind the last one stands the last again.
-  template <class Corner>
-  static HWY_INLINE hn::Vec<Tag> triangles(std::uint32_t first, std::uint32_t count,
-                                           const Corner& corner) {
-    const hn::FixedTag<std::uint32_t, 4> d;
-    const auto one = [&](std::uint32_t i) {
-      return hn::Load(d, corner(first + i < count ? first + i : count - 1));
-    };
-#if HWY_MAX_BYTES >= 64
-    const hn::FixedTag<std::uint32_t, 8> half;
-    return hn::Combine(Tag(), hn::Combine(half, one(3), one(2)), hn::Combine(half, one(1), one(0)));
-#elif HWY_MAX_BYTES >= 32
-    return hn::Combine(Tag(), one(1), one(0));
-#else
-    return one(0);
-#endif
-  }
-
-  std::uint32_t vectors_;
-  hn::Vec<Tag> lanes_[32 / kLanes];
+  const std::uint32_t* corner_;
+  Indices lanes_[kVectors];
 };
 
-/// How many different vertices a run of triangles has; 0 for more than `most` (≤ 8).
-HWY_INLINE std::uint32_t few_vertices(const Treelet& t, const std::uint32_t* ids,
-                                      std::uint32_t count, std::uint32_t most) {
-  if (count == 1) return 3;
-  // Different bits are different vertices: most sets with too many are seen here.
-  std::uint64_t seen = 0;
-  for (std::uint32_t i = 0; i < count; ++i) seen |= t.vertex_bits[ids[i]];
-  if (static_cast<std::uint32_t>(std::popcount(seen)) > most) return 0;
-  const LeafCorners corners(count, [&](std::uint32_t i) { return t.corner[ids[i]]; });
-  std::uint32_t firsts = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t* corner = t.corner[ids[i]];
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t same = corners.where(corner[k]);
-      firsts |= same & (0u - same);
+/// Of the items at positions [begin, end): corners of all their triangles, at most eight.
+HWY_INLINE void take_corners(const Treelet& t, std::uint32_t begin, std::uint32_t end,
+                             Corners4* corner) {
+  const hn::FixedTag<std::uint32_t, 4> d;
+  std::uint32_t count = 0;
+  for (std::uint32_t i = begin; i < end; ++i) {
+    const std::uint32_t id = t.ids[i];
+    for (std::uint32_t k = 0; k < t.triangles[id]; ++k) {
+      hn::Store(hn::Load(d, t.corner[t.start[id] + k]), d, corner[count++]);
     }
   }
-  const auto vertices = static_cast<std::uint32_t>(std::popcount(firsts));
-  return vertices <= most ? vertices : 0;
 }
 
-/// BinaryNode::info of a leaf over the run, or 0 if that would hold too much.
+/// BinaryNode::info of a leaf over so many triangles at positions [begin, end), or 0 if that would
+/// hold too much.
 HWY_INLINE std::uint32_t leaf_info(const Treelet& t, std::uint32_t begin, std::uint32_t end,
-                                   LeafLimit limit) {
-  const std::uint32_t count = end - begin;
-  if (count > limit.items) return 0;
-  if (limit.vertices == kNone) return count;
-  const std::uint32_t vertices = few_vertices(t, t.ids + begin, count, limit.vertices);
-  return vertices > 0 ? count | vertices << 8 : 0;
+                                   std::uint32_t triangles, LeafLimit limit) {
+  if (triangles > limit.items) return 0;
+  if (limit.vertices == kNone) return triangles;
+  if (triangles == 1) return 1u | 3u << 8;
+  std::uint64_t seen = 0;
+  for (std::uint32_t i = begin; i < end; ++i) seen |= t.vertex_bits[t.ids[i]];
+  // Different bits are different vertices: most sets with too many are seen here.
+  if (static_cast<std::uint32_t>(std::popcount(seen)) > limit.vertices) return 0;
+  alignas(64) Corners4 corner[kClusterTriangles];
+  take_corners(t, begin, end, corner);
+  const auto vertices =
+      static_cast<std::uint32_t>(std::popcount(LeafCorners(corner).firsts(triangles)));
+  return vertices <= limit.vertices ? triangles | vertices << 8 : 0;
 }
 
-/// Writes a leaf's record (bvh/triangle_cluster.h); vertices are told apart by their index and
-/// stand in the order of their first corners.
+struct WrittenLeaf {
+  std::uint32_t info;  ///< BinaryNode::info
+  Lanes box;           ///< contains those of the triangles
+};
+
+/// Writes a leaf's record (bvh/triangle_cluster.h), and up to kClusterSlack bytes behind it;
+/// vertices are told apart by their index and stand in the order of their first corners.
 /// @param corner  as LeafCorners has it
-/// @param triangles  their indices in the mesh
-template <class Corner>
-HWY_INLINE void write_cluster(const float* vtx2xyz, std::uint32_t count, std::uint32_t vertices,
-                              const Corner& corner, const std::uint32_t* triangles,
-                              std::byte* record) {
-  // Unused bytes at the end are null, so that equal trees are equal in every byte.
-  const std::size_t bytes = ClusterView::units(count, vertices) * kClusterUnit;
-  std::memset(record + bytes - kClusterUnit, 0, kClusterUnit);
+/// @param firsts  of the triangles, and perhaps of some behind them, as LeafCorners has it
+/// @param primitives  [8], triangles' indices in the mesh
+HWY_INLINE WrittenLeaf write_cluster(const VertexReader& vertex, std::uint32_t count,
+                                     const Corners4* corner, std::uint32_t firsts,
+                                     const std::uint32_t* primitives, std::byte* record) {
+  firsts &= 0xffffffffu >> (32 - 4 * count);
+  const auto vertices = static_cast<std::uint32_t>(std::popcount(firsts));
+  std::uint32_t index[kClusterVertices];
+  LeafCorners::list_vertices(corner[0], firsts, index);
   const std::size_t start = ClusterView::coordinates_offset(count);
-  std::memset(record + start - 4, 0, 4);
   record[0] = static_cast<std::byte>(count);
   record[1] = static_cast<std::byte>(vertices);
-
-  const LeafCorners corners(count, corner);
-  std::uint32_t firsts = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    std::uint32_t packed = 0;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t same = corners.where(corner(i)[k]);
-      const std::uint32_t first = same & (0u - same);
-      firsts |= first;
-      packed |= static_cast<std::uint32_t>(std::popcount(firsts & (first - 1))) << (3 * k);
-    }
-    const auto three = static_cast<std::uint16_t>(packed);
-    std::memcpy(record + 2 + 2 * std::size_t{i}, &three, 2);
+  LeafCorners(corner).store(index, count, record + 2);
+  // Each row of coordinates is written as a whole; what is too much the next one overwrites.
+  const Float4 d;
+  Vector4 v[kClusterVertices];
+  for (std::uint32_t k = 0; k < kClusterVertices; ++k) v[k] = vertex(index[k]);
+  Vector4 lo = v[0], hi = v[0];
+  for (std::uint32_t k = 1; k < kClusterVertices; ++k) {
+    lo = hn::Min(lo, v[k]);
+    hi = hn::Max(hi, v[k]);
   }
-  std::byte* out = record + start;
-  for (; firsts != 0; firsts &= firsts - 1, out += 4) {
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(firsts));
-    const float* xyz = vtx2xyz + 3 * std::size_t{corner(lane / 4)[lane % 4]};
-    std::memcpy(out, xyz, 4);
-    std::memcpy(out + 4 * std::size_t{vertices}, xyz + 1, 4);
-    std::memcpy(out + 8 * std::size_t{vertices}, xyz + 2, 4);
+  Vector4 row[2][3];
+  transpose(v[0], v[1], v[2], v[3], row[0]);
+  transpose(v[4], v[5], v[6], v[7], row[1]);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    auto* const to = reinterpret_cast<float*>(record + start + axis * 4 * vertices);
+    hn::StoreU(row[0][axis], d, to);
+    hn::StoreU(row[1][axis], d, to + 4);
   }
-  std::byte* primitives = record + ClusterView::primitives_offset(count, vertices);
-  for (std::uint32_t i = 0; i < count; ++i) std::memcpy(primitives + 4 * i, triangles + i, 4);
+  std::byte* const last = record + ClusterView::primitives_offset(count, vertices);
+  std::memcpy(last, primitives, 4 * kClusterTriangles);
+  // Unused bytes at the end are null, so that equal trees are equal in every byte.
+  std::memset(last + 4 * std::size_t{count}, 0, kClusterUnit - 4);
+  return {count | vertices << 8, padded_box(lo, hi)};
 }
 
 }  // namespace

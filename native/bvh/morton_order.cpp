@@ -1,9 +1,9 @@
 #include "bvh/morton_order.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <mutex>
+#include <stdexcept>
 #include <vector>
 
 #include "bvh/topology.h"
@@ -104,11 +104,40 @@ std::uint32_t split_of(const MortonOrder& order, std::uint32_t first, std::uint3
   return high;
 }
 
+/// `code`: of the build kernel. Counts go to `order`; the first order.count are what is returned.
+template <class Key>
+Scratch<KeyIndex<Key>> sorted_strips(const Items& items,
+                                     StripCount (*code)(const Items&, const MortonGrid&,
+                                                        std::uint32_t, std::uint32_t,
+                                                        KeyIndex<Key>*),
+                                     const MortonGrid& grid, unsigned bits, ThreadPool& pool,
+                                     const Cancel& cancel, MortonOrder& order) {
+  const std::size_t total = items.count();
+  Scratch<KeyIndex<Key>> found = touched<KeyIndex<Key>>(total, pool);
+  std::vector<StripCount> counts((total + kGrain - 1) / kGrain, StripCount{0, 0});
+  pool.for_each_chunk(counts.size(), 1, [&](std::size_t chunk, std::size_t) {
+    if (cancel.raised()) return;
+    const std::size_t begin = chunk * kGrain, end = std::min(total, begin + kGrain);
+    counts[chunk] = code(items, grid, static_cast<std::uint32_t>(begin),
+                         static_cast<std::uint32_t>(end), found.data() + begin);
+  });
+  check(cancel);
+  std::vector<std::span<KeyIndex<Key>>> pieces;
+  for (std::size_t chunk = 0; chunk < counts.size(); ++chunk) {
+    pieces.emplace_back(found.data() + chunk * kGrain, counts[chunk].strips);
+    order.count += counts[chunk].strips;
+    order.left_out += counts[chunk].left_out;
+  }
+  Scratch<KeyIndex<Key>> scratch = touched<KeyIndex<Key>>(order.count, pool);
+  radix_sort(pieces, {scratch.data(), scratch.size()}, pool, cancel, bits);
+  return found;
+}
+
 }  // namespace
 
 MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& cancel) {
   MortonOrder order;
-  const auto total = static_cast<std::uint32_t>(items.count());
+  if (items.count() > kMostStrips) throw std::invalid_argument("a tree has too many items");
   const Aabb all = extent(items, pool, cancel);
   check(cancel);
   const std::vector<Aabb> sample = sample_of(items);
@@ -118,64 +147,25 @@ MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& 
                                       : max_of(max_of(all.hi.x - all.lo.x, all.hi.y - all.lo.y),
                                                all.hi.z - all.lo.z);
 
-  // What is left out sorts behind everything; bits that no code has are not sorted by.
-  std::atomic<std::uint32_t> left_out{0};
-  const BuildKernel& kernel = build_kernel();
+  const unsigned bits = (grid.wide ? 63u : 30u) + (grid.is_one ? 0u : 1u);
   if (grid.wide) {
-    order.wide = touched<KeyIndex<std::uint64_t>>(total, pool);
-    pool.for_each_chunk(total, kGrain, [&](std::size_t begin, std::size_t end) {
-      if (cancel.raised()) return;
-      for (std::size_t i = begin; i < end; ++i) {
-        const bool left = items.is_left_out(i);
-        const std::uint64_t code = left ? ~std::uint64_t{0} : grid.code_63(items.box(i));
-        order.wide[i] = {code, static_cast<std::uint32_t>(i)};
-        if (left) ++left_out;
-      }
-    });
-    check(cancel);
-    using Item = KeyIndex<std::uint64_t>;
-    Scratch<Item> scratch = touched<Item>(total, pool);
-    // A code of all ones is that of the last cell of all, too: whatever has it is told apart here.
-    radix_sort({order.wide.data(), total}, {scratch.data(), total}, pool, cancel);
-    const auto* const behind =
-        std::lower_bound(order.wide.begin(), order.wide.end(), ~std::uint64_t{0},
-                         [](const Item& item, std::uint64_t code) { return item.key < code; });
-    auto kept = static_cast<std::uint32_t>(behind - order.wide.begin());
-    for (std::uint32_t i = kept; i < total && left_out > 0; ++i) {
-      if (!items.is_left_out(order.wide[i].index)) order.wide[kept++] = order.wide[i];
-    }
+    order.wide = sorted_strips(items, build_kernel().code_63, grid, bits, pool, cancel, order);
   } else {
-    order.narrow = touched<KeyIndex<std::uint32_t>>(total, pool);
-    pool.for_each_chunk(total, kGrain, [&](std::size_t begin, std::size_t end) {
-      if (cancel.raised()) return;
-      left_out += kernel.code(items, grid, static_cast<std::uint32_t>(begin),
-                              static_cast<std::uint32_t>(end), 0x80000000u, order.narrow.data());
-    });
-    check(cancel);
-    using Item = KeyIndex<std::uint32_t>;
-    Scratch<Item> scratch = touched<Item>(total, pool);
-    const unsigned bits = left_out > 0 ? 32 : grid.is_one ? 30 : 31;
-    radix_sort({order.narrow.data(), total}, {scratch.data(), total}, pool, cancel, bits);
+    order.narrow = sorted_strips(items, build_kernel().code_30, grid, bits, pool, cancel, order);
   }
-  order.left_out = left_out;
-  order.count = total - left_out;
   return order;
 }
 
-void MortonOrder::copy_run(Run run, std::uint32_t* items, std::uint32_t* codes) const {
-  if (wide.size() == 0) {
-    for (std::uint32_t k = 0; k < run.count; ++k) {
-      items[k] = narrow[run.first + k].index;
-      codes[k] = narrow[run.first + k].key;
-    }
-    return;
-  }
+const KeyIndex<std::uint32_t>* MortonOrder::narrow_run(Run run,
+                                                       KeyIndex<std::uint32_t>* room) const {
+  if (wide.size() == 0) return &narrow[run.first];
   const std::uint64_t differ = wide[run.first].key ^ wide[run.first + run.count - 1].key;
   const int shift = std::max(0, 33 - std::countl_zero(differ));
   for (std::uint32_t k = 0; k < run.count; ++k) {
-    items[k] = wide[run.first + k].index;
-    codes[k] = static_cast<std::uint32_t>(wide[run.first + k].key >> shift) & 0x7fffffffu;
+    const KeyIndex<std::uint64_t>& from = wide[run.first + k];
+    room[k] = {static_cast<std::uint32_t>(from.key >> shift) & 0x7fffffffu, from.index};
   }
+  return room;
 }
 
 void RunTree::cut(const MortonOrder& order, std::uint32_t most) {

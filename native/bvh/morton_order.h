@@ -16,23 +16,26 @@ struct Run {
   std::uint32_t first, count;
 };
 
-/// Items along the Morton curve, those that no ray can meet left out.
+/// Items along the Morton curve, triangles as strips (bvh/strip.h), without those that no ray can
+/// meet.
 struct MortonOrder {
-  /// The first `count` are sorted by (code, index). Only one of the two has anything in it.
+  /// Sorted by (code, index). Only one of the two has anything in it.
   Scratch<KeyIndex<std::uint32_t>> narrow;
   Scratch<KeyIndex<std::uint64_t>> wide;
-  std::uint32_t count = 0;
-  std::uint32_t left_out = 0;
+  std::uint32_t count = 0;     ///< of strips
+  std::uint32_t left_out = 0;  ///< items in none
   float sample_area = 0.0f;   ///< median half area of the boxes looked at
   float largest_side = 0.0f;  ///< of everything
 
   std::uint64_t code(std::size_t i) const { return wide.size() > 0 ? wide[i].key : narrow[i].key; }
-  std::uint32_t item(std::size_t i) const {
+
+  std::uint32_t strip(std::size_t i) const {
     return wide.size() > 0 ? wide[i].index : narrow[i].index;
   }
 
-  /// The run's items, and 31 bits of their codes: the highest in which they differ and those below.
-  void copy_run(Run run, std::uint32_t* items, std::uint32_t* codes) const;
+  /// The run, with codes of 31 bits: the highest in which they differ and those below. What is not
+  /// there in this form is put into `room`.
+  const KeyIndex<std::uint32_t>* narrow_run(Run run, KeyIndex<std::uint32_t>* room) const;
 };
 
 /// @throws Cancelled

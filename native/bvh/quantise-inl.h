@@ -20,7 +20,7 @@ struct LaneGrid {
 /// by what rounding does, as in bvh/quantise.cpp, whose planes these are.
 template <bool kLower>
 HWY_INLINE void store_planes(const LaneGrid& grid, float inverse_step, GridLanes x,
-                             std::uint8_t* to) {
+                             hn::Mask<GridTag> is_used, std::uint8_t* to) {
   const GridTag d;
   const auto one = hn::Set(d, 1.0f), zero = hn::Zero(d), last = hn::Set(d, 255.0f);
   const auto place = hn::Mul(hn::Sub(x, grid.origin), hn::Set(d, inverse_step));
@@ -39,6 +39,7 @@ HWY_INLINE void store_planes(const LaneGrid& grid, float inverse_step, GridLanes
     if (HWY_LIKELY(hn::AllFalse(d, fails))) break;
     q = hn::IfThenElse(fails, kLower ? hn::Sub(q, one) : hn::Add(q, one), q);
   }
+  q = hn::IfThenElse(is_used, q, kLower ? last : zero);
   const hn::Rebind<std::int32_t, GridTag> di;
   const auto whole = hn::BitCast(hn::RebindToUnsigned<decltype(di)>(), hn::ConvertTo(di, q));
   hn::StoreU(hn::U8FromU32(whole), hn::Rebind<std::uint8_t, GridTag>(), to);
@@ -48,14 +49,6 @@ HWY_INLINE void store_planes(const LaneGrid& grid, float inverse_step, GridLanes
 struct Corners {
   GridLanes axis[3];
 };
-
-HWY_INLINE void transpose(Vector4 a, Vector4 b, Vector4 c, Vector4 e, Vector4* xyz) {
-  const Float4 d;
-  const auto ab = hn::InterleaveLower(d, a, b), ce = hn::InterleaveLower(d, c, e);
-  xyz[0] = hn::ConcatLowerLower(d, ce, ab);
-  xyz[1] = hn::ConcatUpperUpper(d, ce, ab);
-  xyz[2] = hn::ConcatLowerLower(d, hn::InterleaveUpper(d, c, e), hn::InterleaveUpper(d, a, b));
-}
 
 /// `corner(i)` are four lanes of child i.
 template <class Corner>
@@ -77,6 +70,7 @@ HWY_INLINE Corners corners_of(int first, const Corner& corner) {
 void quantise_children(const BinaryNode* nodes, const std::uint32_t* children, int count,
                        WideNode& wide) {
   constexpr int kParts = kWidth / kGridLanes;
+  alignas(32) static constexpr float kNumbers[kWidth] = {0, 1, 2, 3, 4, 5, 6, 7};
   const GridTag d;
   const auto child = [&](int i) -> const BinaryNode& { return nodes[children[i < count ? i : 0]]; };
   Corners lo[kParts], minus_hi[kParts];
@@ -99,12 +93,10 @@ void quantise_children(const BinaryNode* nodes, const std::uint32_t* children, i
     for (int p = 0; p < kParts; ++p) {
       std::uint8_t* const lower = wide.q[axis][0] + p * kGridLanes;
       std::uint8_t* const upper = wide.q[axis][1] + p * kGridLanes;
-      store_planes<true>(grid, 1.0f / step, lo[p].axis[axis], lower);
-      store_planes<false>(grid, 1.0f / step, hn::Neg(minus_hi[p].axis[axis]), upper);
-    }
-    for (int i = count; i < kWidth; ++i) {
-      wide.q[axis][0][i] = 255;
-      wide.q[axis][1][i] = 0;
+      const auto number = hn::Add(hn::Load(d, kNumbers), hn::Set(d, float(p * kGridLanes)));
+      const auto is_used = hn::Lt(number, hn::Set(d, static_cast<float>(count)));
+      store_planes<true>(grid, 1.0f / step, lo[p].axis[axis], is_used, lower);
+      store_planes<false>(grid, 1.0f / step, hn::Neg(minus_hi[p].axis[axis]), is_used, upper);
     }
   }
 }

@@ -1,6 +1,7 @@
 // Compiles the builders' inner loops for every instruction set, as traverse_simd.cpp does.
 #include "bvh/treelet.h"
 
+#include <algorithm>
 #include <cstring>
 
 // GCC before 12.3 gets 16-bit high products of this fallback wrong (bug 106322); none is used here.
@@ -17,15 +18,18 @@
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
 #include "bvh/treelet_box-inl.h"
-#include "bvh/leaf-inl.h"
 #include "bvh/treelet_load-inl.h"
-#include "bvh/treelet_linear-inl.h"
+#include "bvh/leaf-inl.h"
+#include "bvh/treelet_strips-inl.h"
 #include "bvh/treelet_bins-inl.h"
 #include "bvh/treelet_few-inl.h"
 #include "bvh/treelet_sah-inl.h"
 #include "bvh/plan-inl.h"
 #include "bvh/quantise-inl.h"
 #include "bvh/emit-inl.h"
+#include "bvh/treelet_lengths-inl.h"
+#include "bvh/treelet_cuts-inl.h"
+#include "bvh/treelet_pack-inl.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
@@ -34,16 +38,17 @@ namespace HWY_NAMESPACE {
 
 extern const BuildKernel kBuildKernel;
 const BuildKernel kBuildKernel = {&HWY_STR(HWY_NAMESPACE)[2],  // N_AVX2: "AVX2"
-                                  &code,
-                                  &load<true>,
-                                  &load<false>,
-                                  &linear,
-                                  &sah,
+                                  &code<std::uint32_t>,
+                                  &code<std::uint64_t>,
+                                  &load,
+                                  &load_codes,
+                                  &cluster,
                                   &measure,
                                   &split,
                                   &bound,
                                   &quantise_children,
-                                  &emit_treelet,
+                                  &pack_treelet,
+                                  &sah_treelet,
                                   &emit_tree};
 
 }  // namespace HWY_NAMESPACE

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "bvh/binary_tree.h"
 #include "bvh/items.h"
 #include "bvh/morton_grid.h"
+#include "bvh/strip.h"
 #include "bvh/triangle_cluster.h"
 #include "bvh/wide_node.h"
 #include "bvh/wide_plan.h"
@@ -15,32 +17,50 @@ namespace komorebi {
 /// Runs of the Morton order that a worker takes at once: their boxes and nodes stay in its nearest
 /// cache.
 inline constexpr std::uint32_t kRunSize = 1024;
-/// Most items on a desk: they stay in the next cache.
+/// Most triangles on a desk: they stay in the next cache.
 inline constexpr std::uint32_t kTreeletSize = 4096;
+static_assert(kRunSize * kMostInStrip <= kTreeletSize);
 
 /// Eight floats: the low corner and the negated high corner, each with a lane to spare.
 struct alignas(32) WideBox {
   float v[8];
 };
 
-/// Codes on a desk have 31 bits, of those in which they differ.
-inline constexpr std::uint32_t kLastCode = 0x7fffffffu;
-inline constexpr std::uint32_t kCodesBehind = 16;
+/// A leaf takes no more for each of its items, and no more in all.
+inline constexpr std::size_t kLeafBytes = std::size_t{ClusterView::units(1, 3)} * kClusterUnit;
+inline constexpr std::size_t kLeafMostBytes = std::size_t{ClusterView::units(8, 8)} * kClusterUnit;
 
-/// One worker's desk: a run of items, and the tree over them.
+/// What is read or written behind the last value, as lanes are.
+inline constexpr std::uint32_t kBehindDesk = 16;
+/// So many triangles are asked for before they are read.
+inline constexpr std::uint32_t kFetchedAhead = 32;
+
+/// One worker's desk: triangles, which come as strips, and the tree over them.
 struct Treelet {
-  std::uint32_t count = 0;
+  std::uint32_t count = 0;  ///< of items: strips, or instances
+  std::uint32_t triangle_count = 0;
   std::uint32_t node_count = 0;
+  // Per triangle; of instances only `primitive` and `triangle_box`.
+  alignas(16) std::uint32_t corner[kTreeletSize + kBehindDesk][4];  ///< vertices, and kNone
+  WideBox triangle_box[kTreeletSize];
+  std::uint32_t primitive[kTreeletSize + kFetchedAhead];
+  std::uint32_t code[kTreeletSize + kBehindDesk];  ///< of its strip; where there are codes
+  // Per item.
+  std::uint32_t start[kTreeletSize];      ///< its first triangle
+  std::uint32_t triangles[kTreeletSize];  ///< how many it has
   WideBox box[kTreeletSize];
-  alignas(16) float centre[kTreeletSize][4];          ///< and minus the longest side; by sah()
-  alignas(16) std::uint32_t corner[kTreeletSize][4];  ///< vertices of a triangle, and kNone
-  std::uint64_t vertex_bits[kTreeletSize];            ///< of its vertices' hashes
-  std::uint32_t item[kTreeletSize];                   ///< local index → item
-  std::uint32_t ids[kTreeletSize];                    ///< position → local index
-  std::uint32_t code[kTreeletSize + kCodesBehind];
+  alignas(16) float centre[kTreeletSize][4];  ///< minus the longest side, its two last
+                                              ///< bits: triangles − 1; by sah_treelet()
+  std::uint64_t vertex_bits[kTreeletSize];    ///< of its vertices' hashes
+  /// Position → item. Not a multiple of 4 KiB from `moved`: stores to one of them would hold up
+  /// loads from the other.
+  std::uint32_t ids[kTreeletSize + kBehindDesk];
   std::uint32_t moved[kTreeletSize];
   BinaryNode nodes[2 * kTreeletSize];  ///< local: children and leaf positions from 0
   PlanCost cost[2 * kTreeletSize];
+  // By pack_treelet().
+  WideNode staged[kTreeletSize];
+  std::byte staged_leaves[kTreeletSize * kLeafBytes + kLeafMostBytes];
 };
 
 /// What becomes of a treelet: a forest, whose roots go into a wide node above. Nodes and leaves are
@@ -67,37 +87,58 @@ inline bool is_treelet(const BinaryNode& node) {
   return node.info == kTreeletInfo;
 }
 
-/// Runs of items as they stand in Morton order, which a top tree parts as a whole.
-struct Clusters {
-  BinaryNode* cluster;   ///< box; first, info: run of sorted items
-  std::uint32_t* ids;    ///< position → cluster
-  std::uint32_t* moved;  ///< scratch of the same length
+/// BinaryNode::info of a cluster: up to seven strips (bvh/strip.h), of which some are one item with
+/// the strip before them.
+struct ClusterInfo {
+  std::uint32_t strips, joined, triangles;  ///< joined: bit k for strip k
+
+  explicit ClusterInfo(std::uint32_t info)
+      : strips(info & 15u), joined(info >> 4 & 15u), triangles(info >> 8) {}
+  ClusterInfo(std::uint32_t s, std::uint32_t j, std::uint32_t t)
+      : strips(s), joined(j), triangles(t) {}
+  std::uint32_t packed() const { return strips | joined << 4 | triangles << 8; }
 };
 
-/// A range of Clusters::ids, with what is known of it.
+/// Runs of items as they stand in Morton order, which a top tree parts as a whole.
+struct Clusters {
+  BinaryNode* cluster;  ///< box; first: of its run of strips; info: ClusterInfo
+  BinaryNode* moved;    ///< scratch of the same length
+};
+
+/// A range of clusters, with what is known of it.
 struct ClusterRange {
   std::uint32_t begin, end;
-  std::uint32_t items;  ///< in all its clusters
+  std::uint32_t triangles;  ///< in all its clusters
   WideBox centres;      ///< bounds of the centres; in v[3] minus the longest side of a box
+};
+
+struct StripCount {
+  std::uint32_t strips;
+  std::uint32_t left_out;  ///< items that no ray can meet: they are in none
 };
 
 /// The inner loops of the builders, compiled for one instruction set. They give the same tree in
 /// each: only minima, sums and products in a fixed order.
 struct BuildKernel {
   const char* name;
-  /// Codes of items [begin, end); what is left out gets the code `left_out`. Returns how many were.
-  std::uint32_t (*code)(const Items& items, const MortonGrid& grid, std::uint32_t begin,
-                        std::uint32_t end, std::uint32_t left_out, KeyIndex<std::uint32_t>* out);
-  /// Puts items on the desk behind those that are there.
-  void (*load)(const Items& items, const std::uint32_t* indices, std::uint32_t count,
+  /// Strips of items [begin, end) with their codes; `begin` decides which they are, and `out` has
+  /// room for one of each item.
+  StripCount (*code_30)(const Items& items, const MortonGrid& grid, std::uint32_t begin,
+                        std::uint32_t end, KeyIndex<std::uint32_t>* out);
+  StripCount (*code_63)(const Items& items, const MortonGrid& grid, std::uint32_t begin,
+                        std::uint32_t end, KeyIndex<std::uint64_t>* out);
+  /// Puts strips on the desk, and their triangles. A key other than null makes a strip one item
+  /// with that before it.
+  void (*load)(const Items& items, const KeyIndex<std::uint32_t>* strips, std::uint32_t count,
                Treelet& treelet);
-  /// The same without what is known of triangles' corners.
-  void (*load_boxes)(const Items& items, const std::uint32_t* indices, std::uint32_t count,
-                     Treelet& treelet);
-  /// Builds leaves, and what is above them without its boxes, by the codes of the items (sorted).
-  void (*linear)(LeafLimit limit, float largest_leaf, Treelet& treelet);
-  /// Builds by the surface-area heuristic. `scale`: 1 / a length typical of the tree.
-  void (*sah)(LeafLimit limit, float scale, Treelet& treelet);
+  /// The same for pack_treelet() and cluster(): keys are codes of 31 bits, each strip is an item.
+  void (*load_codes)(const Items& items, const KeyIndex<std::uint32_t>* strips,
+                     std::uint32_t count, bool with_boxes, Treelet& treelet);
+  /// Cuts what is on the desk into clusters of up to three neighbours, `first` being
+  /// the place of the first strip. None is larger than `largest_area`, if it has more than one;
+  /// `scale` is that of sah_treelet(). Returns how many.
+  std::uint32_t (*cluster)(float largest_area, float scale, std::uint32_t first, Treelet& treelet,
+                           BinaryNode* clusters);
   /// Items and centres of a range.
   void (*measure)(const Clusters& clusters, ClusterRange& range);
   /// Parts a range by the surface-area heuristic, or in halves; both parts are not empty.
@@ -108,9 +149,12 @@ struct BuildKernel {
   /// Boxes of a wide node's children onto its grid (bvh/quantise.h).
   void (*quantise)(const BinaryNode* nodes, const std::uint32_t* children, int count,
                    WideNode& wide);
-  /// Makes wide nodes and leaves of what was built; areas are measured in units of 1 / scale².
-  void (*emit_treelet)(const Items& items, float scale, Treelet& treelet, WideTreelet& to);
-  /// The same for a planned tree of any size.
+  /// Makes wide nodes and leaves of what is on the desk, by its codes (sorted). Areas are measured
+  /// in units of 1 / scale², the length being typical of the tree.
+  void (*pack_treelet)(const Items& items, float scale, Treelet& treelet, WideTreelet& to);
+  /// The same by the surface-area heuristic.
+  void (*sah_treelet)(const Items& items, float scale, Treelet& treelet, WideTreelet& to);
+  /// The same of a planned tree of any size.
   void (*emit_tree)(const Items& items, const BinaryTree& tree, WideTreelet& to);
 };
 

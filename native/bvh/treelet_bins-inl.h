@@ -6,34 +6,45 @@ namespace komorebi {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Positions [begin, end) of a list of ids, the boxes that they stand for, and room to work.
+/// Items of a treelet in the order of `ids`. What parts a range asks for box, centre and weight of
+/// the item at a position, and writes every item to both sides (see split_range).
 struct ItemList {
-  const Treelet& t;
-  std::uint32_t* ids;
-  std::uint32_t* moved;
+  Treelet& t;
+  HWY_INLINE std::uint32_t at(std::uint32_t i) const { return t.ids[i]; }
   HWY_INLINE Lanes box(std::uint32_t id) const { return load_box(t.box[id].v); }
   HWY_INLINE Vector4 centre(std::uint32_t id) const { return hn::Load(Float4(), t.centre[id]); }
-  HWY_INLINE void fetch(std::uint32_t, std::uint32_t, std::uint32_t) const {}  // in the cache
-  HWY_INLINE std::uint32_t weight(std::uint32_t) const { return 1; }
+  HWY_INLINE std::uint32_t weight(std::uint32_t id) const {
+    return (std::bit_cast<std::uint32_t>(t.centre[id][3]) & 3u) + 1;
+  }
+  HWY_INLINE void put(std::uint32_t id, std::uint32_t left, std::uint32_t right) const {
+    t.ids[left] = id;
+    t.moved[right] = id;
+  }
+  HWY_INLINE void bring_back(std::uint32_t from, std::uint32_t to) const { t.ids[to] = t.moved[from]; }
 };
 
+/// Clusters, which move themselves: there are too many for a cache, and so each is read where the
+/// one before it was.
 struct ClusterList {
-  const BinaryNode* cluster;
-  std::uint32_t* ids;
-  std::uint32_t* moved;
-  HWY_INLINE Lanes box(std::uint32_t id) const { return node_box(cluster[id]); }
-  HWY_INLINE Vector4 centre(std::uint32_t id) const { return centre_and_side_of(box(id)); }
-  /// What comes kAhead steps later.
-  HWY_INLINE void fetch(std::uint32_t i, std::uint32_t step, std::uint32_t end) const {
-    if (i + kAhead * step < end) hwy::Prefetch(&cluster[ids[i + kAhead * step]]);
+  BinaryNode* cluster;
+  BinaryNode* moved;
+  HWY_INLINE const BinaryNode& at(std::uint32_t i) const { return cluster[i]; }
+  HWY_INLINE Lanes box(const BinaryNode& it) const { return node_box(it); }
+  HWY_INLINE Vector4 centre(const BinaryNode& it) const { return centre_and_side_of(node_box(it)); }
+  HWY_INLINE std::uint32_t weight(const BinaryNode& it) const {
+    return ClusterInfo(it.info).triangles;
   }
-  HWY_INLINE std::uint32_t weight(std::uint32_t id) const { return cluster[id].info; }
-  static constexpr std::uint32_t kAhead = 16;
+  HWY_INLINE void put(const BinaryNode& it, std::uint32_t left, std::uint32_t right) const {
+    const Lanes all = load_box(it.lo);
+    store_box(all, cluster[left].lo);
+    store_box(all, moved[right].lo);
+  }
+  HWY_INLINE void bring_back(std::uint32_t from, std::uint32_t to) const { cluster[to] = moved[from]; }
 };
 
 struct Range {
   std::uint32_t begin, end;
-  std::uint32_t items;
+  std::uint32_t triangles;
   Lanes centres;  ///< their bounds; lane 3 of the low corner: minus the longest side of a box
 };
 
@@ -41,9 +52,8 @@ template <class List>
 Range measure_range(const List& list, std::uint32_t begin, std::uint32_t end) {
   Range range{begin, end, 0, empty_lanes()};
   for (std::uint32_t i = begin; i < end; ++i) {
-    list.fetch(i, 1, end);
-    range.centres = merge(range.centres, point_box(list.centre(list.ids[i])));
-    range.items += list.weight(list.ids[i]);
+    range.centres = merge(range.centres, point_box(list.centre(list.at(i))));
+    range.triangles += list.weight(list.at(i));
   }
   return range;
 }
@@ -107,7 +117,7 @@ HWY_INLINE Plane cheapest_plane(const Bins& bins, const float* side, int count, 
 }
 
 HWY_INLINE int bin_count(std::uint32_t length) {
-  return length > 1024 ? kMostBins : length > 48 ? kMostBins / 2 : 8;
+  return length > 1024 ? kMostBins : length > 256 ? kMostBins / 2 : length > 32 ? 16 : 8;
 }
 
 /// Of longer ranges so many items choose the plane, evenly spread along the list…
@@ -149,13 +159,13 @@ HWY_INLINE void split_range(const List& list, float scale, const Range& range, R
     return hn::Add(hn::Mul(hn::Sub(centre, start), factors), hn::Set(Float4(), 1.0f));
   };
   const auto put_into_bins = [&](std::uint32_t i) {
-    const std::uint32_t id = list.ids[i];
-    const Lanes box = list.box(id);
-    const auto bits = hn::BitCast(du, place_of(list.centre(id)));
+    const auto& item = list.at(i);
+    const Lanes box = list.box(item);
+    const auto bits = hn::BitCast(du, place_of(list.centre(item)));
     const auto bin = hn::And(hn::ShiftRight<23 - kBinBits>(bits), hn::Set(du, kMostBins - 1u));
     const auto bytes = hn::U8FromU32(bin);
     std::uint32_t packed = hn::GetLane(hn::BitCast(hn::FixedTag<std::uint32_t, 1>(), bytes));
-    const std::uint32_t weight = list.weight(id);
+    const std::uint32_t weight = list.weight(item);
     for (int axis = 0; axis < 3; ++axis, packed >>= 8) {
       float* const sum = bins.box[axis][packed & 255u];
       store_box(merge(load_box(sum), box), sum);
@@ -171,7 +181,6 @@ HWY_INLINE void split_range(const List& list, float scale, const Range& range, R
   const std::uint32_t step = all_small ? (length + kMostSamples - 1) / kMostSamples : 1;
   for (std::uint32_t i = 0; i < part; i += step) {
     for (std::uint32_t from = range.begin; from < range.begin + 4 * part; from += part) {
-      list.fetch(from + i, step, from + part);
       put_into_bins(from + i);
     }
   }
@@ -179,31 +188,30 @@ HWY_INLINE void split_range(const List& list, float scale, const Range& range, R
   const Plane plane = cheapest_plane(bins, side, count, scale);
   if (plane.axis < 0) return split_in_halves(list, range, left, right);
 
-  // Parted without a branch that nobody could predict: every id is written to both sides.
+  // Parted without a branch that nobody could predict: every item is written to both sides.
   Lanes left_centres = empty_lanes(), right_centres = left_centres;
   const Lanes nothing = left_centres;
-  std::uint32_t to_left = range.begin, to_right = 0, left_items = 0;
-  std::uint32_t* const moved = list.moved + range.begin;
+  std::uint32_t to_left = range.begin, to_right = range.begin, left_triangles = 0;
   const auto first_right = hn::Set(Float4(), 1.0f + static_cast<float>(plane.bin) / kMostBins);
   for (std::uint32_t i = range.begin; i < range.end; ++i) {
-    list.fetch(i, 1, range.end);
-    const std::uint32_t id = list.ids[i];
-    const auto centre = list.centre(id);
+    const auto& item = list.at(i);
+    const auto centre = list.centre(item);
     std::uint8_t right_of[8];
     hn::StoreMaskBits(Float4(), hn::Ge(place_of(centre), first_right), right_of);
     const std::uint32_t is_right = (right_of[0] >> plane.axis) & 1u;
     const Lanes point = point_box(centre);
     left_centres = merge(left_centres, choose(is_right, nothing, point));
     right_centres = merge(right_centres, choose(is_right, point, nothing));
-    list.ids[to_left] = id;
-    moved[to_right] = id;
+    left_triangles += (1u - is_right) * list.weight(item);
+    list.put(item, to_left, to_right);
     to_left += 1u - is_right;
     to_right += is_right;
-    left_items += (1u - is_right) * list.weight(id);
   }
-  for (std::uint32_t k = 0; k < to_right; ++k) list.ids[to_left + k] = moved[k];
-  *left = Range{range.begin, to_left, left_items, left_centres};
-  *right = Range{to_left, range.end, range.items - left_items, right_centres};
+  for (std::uint32_t k = range.begin; k < to_right; ++k) {
+    list.bring_back(k, to_left + k - range.begin);
+  }
+  *left = Range{range.begin, to_left, left_triangles, left_centres};
+  *right = Range{to_left, range.end, range.triangles - left_triangles, right_centres};
 }
 
 }  // namespace

@@ -115,6 +115,15 @@ HWY_INLINE Vector4 three_lanes(Vector4 v) {
   return hn::And(v, hn::BitCast(Float4(), mask));
 }
 
+/// x, y and z of four points.
+HWY_INLINE void transpose(Vector4 a, Vector4 b, Vector4 c, Vector4 e, Vector4* xyz) {
+  const Float4 d;
+  const auto ab = hn::InterleaveLower(d, a, b), ce = hn::InterleaveLower(d, c, e);
+  xyz[0] = hn::ConcatLowerLower(d, ce, ab);
+  xyz[1] = hn::ConcatUpperUpper(d, ce, ab);
+  xyz[2] = hn::ConcatLowerLower(d, hn::InterleaveUpper(d, c, e), hn::InterleaveUpper(d, a, b));
+}
+
 /// The box of a node, whose spare lanes hold something else.
 HWY_INLINE Lanes node_box(const BinaryNode& node) {
   const Lanes box = load_box(node.lo);

@@ -36,68 +36,75 @@ HWY_INLINE Few cost_of(const FewBoxes& boxes, Few items, float scale) {
   return hn::Mul(area, hn::Add(items, hn::Set(d, kLeafItems)));
 }
 
-/// Lane j stands for the plane through item j's centre: on the left is what lies before or on it.
-/// Ranges get no centres: who is to be split next is as few.
+/// A plane through the centre of each item on each axis, a lane each, axis by axis: on the left is
+/// what lies before or on it. Ranges get no centres: who is to be split next is as few.
 HWY_INLINE void split_few(Treelet& t, float scale, const Range& range, Range* left, Range* right) {
   const FewTag d;
-  const std::uint32_t count = range.end - range.begin;
+  constexpr std::uint32_t kPlanes = 3 * kFewItems;
+  const std::uint32_t count = range.end - range.begin, planes = 3 * count;
   std::uint32_t* const ids = t.ids + range.begin;
-  alignas(64) float centre[3][kFewItems];
+  alignas(64) float plane[kPlanes + kFewItems];
+  float weight[kFewItems];
   for (std::uint32_t i = 0; i < count; ++i) {
-    for (int axis = 0; axis < 3; ++axis) centre[axis][i] = t.centre[ids[i]][axis];
+    weight[i] = static_cast<float>(t.triangles[ids[i]]);
+    for (std::uint32_t axis = 0; axis < 3; ++axis) plane[axis * count + i] = t.centre[ids[i]][axis];
   }
-  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
-  for (std::uint32_t i = count; i < (count + lanes - 1) / lanes * lanes; ++i) {
-    for (int axis = 0; axis < 3; ++axis) centre[axis][i] = kFloatMax;  // nothing on the right
-  }
+  hn::StoreU(hn::Set(d, kFloatMax), d, plane + planes);  // nothing on the right of these
   float best = kFloatMax;
-  float plane = 0.0f;
-  int best_axis = -1;
-  const auto most = hn::Set(d, kFloatMax), one = hn::Set(d, 1.0f);
-  for (std::uint32_t first = 0; first < count; first += lanes) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto planes = hn::Load(d, centre[axis] + first);
-      FewBoxes before, behind;
-      for (int k = 0; k < 6; ++k) before.side[k] = behind.side[k] = most;
-      auto items = hn::Zero(d);
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const float* const v = t.box[ids[i]].v;
-        const Few box[6] = {hn::Set(d, v[0]), hn::Set(d, v[1]), hn::Set(d, v[2]),
-                            hn::Set(d, v[4]), hn::Set(d, v[5]), hn::Set(d, v[6])};
-        const auto is_before = hn::Le(hn::Set(d, centre[axis][i]), planes);
-        add_where(is_before, box, before);
-        add_where(hn::Not(is_before), box, behind);
-        items = hn::IfThenElse(is_before, hn::Add(items, one), items);
-      }
-      const auto others = hn::Sub(hn::Set(d, static_cast<float>(count)), items);
-      const auto sum = hn::Add(cost_of(before, items, scale), cost_of(behind, others, scale));
-      // No number, or nothing on the right: no plane.
-      const auto is_plane = hn::And(hn::Lt(sum, most), hn::Gt(others, hn::Zero(d)));
-      const auto cost = hn::IfThenElse(is_plane, sum, most);
-      const float least = hn::GetLane(hn::MinOfLanes(d, cost));
-      if (least < best) {
-        best = least;
-        best_axis = axis;
-        const auto lane = hn::FindFirstTrue(d, hn::Eq(cost, hn::Set(d, least)));
-        plane = centre[axis][first + static_cast<std::uint32_t>(lane)];
-      }
+  std::uint32_t best_plane = planes;
+  const auto most = hn::Set(d, kFloatMax);
+  const auto all = hn::Set(d, static_cast<float>(range.triangles));
+  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
+  for (std::uint32_t first = 0; first < planes; first += lanes) {
+    const auto at = hn::Load(d, plane + first);
+    const auto number = hn::Add(hn::Set(d, static_cast<float>(first)), hn::Iota(d, 0.0f));
+    const auto is_x = hn::Lt(number, hn::Set(d, static_cast<float>(count)));
+    const auto is_y = hn::Lt(number, hn::Set(d, static_cast<float>(2 * count)));
+    FewBoxes before, behind;
+    for (int k = 0; k < 6; ++k) before.side[k] = behind.side[k] = most;
+    auto triangles = hn::Zero(d);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const float* const v = t.box[ids[i]].v;
+      const Few box[6] = {hn::Set(d, v[0]), hn::Set(d, v[1]), hn::Set(d, v[2]),
+                          hn::Set(d, v[4]), hn::Set(d, v[5]), hn::Set(d, v[6])};
+      const auto y_or_z = hn::IfThenElse(is_y, hn::Set(d, plane[count + i]),
+                                         hn::Set(d, plane[2 * count + i]));
+      const auto centre = hn::IfThenElse(is_x, hn::Set(d, plane[i]), y_or_z);
+      const auto is_before = hn::Le(centre, at);
+      add_where(is_before, box, before);
+      add_where(hn::Not(is_before), box, behind);
+      triangles =
+          hn::IfThenElse(is_before, hn::Add(triangles, hn::Set(d, weight[i])), triangles);
+    }
+    const auto others = hn::Sub(all, triangles);
+    const auto sum = hn::Add(cost_of(before, triangles, scale), cost_of(behind, others, scale));
+    // No number, or nothing on the right: no plane.
+    const auto is_plane = hn::And(hn::Lt(sum, most), hn::Gt(others, hn::Zero(d)));
+    const auto cost = hn::IfThenElse(is_plane, sum, most);
+    const float least = hn::GetLane(hn::MinOfLanes(d, cost));
+    if (least < best) {
+      best = least;
+      const auto lane = hn::FindFirstTrue(d, hn::Eq(cost, hn::Set(d, least)));
+      best_plane = first + static_cast<std::uint32_t>(lane);
     }
   }
-  const ItemList list{t, t.ids, t.moved};
-  if (best_axis < 0) return split_in_halves(list, range, left, right);
-  std::uint32_t to_left = 0, to_right = 0;
+  if (best_plane == planes) return split_in_halves(ItemList{t}, range, left, right);
+  const float* const centre = plane + best_plane / count * count;
+  const float where = plane[best_plane];
+  std::uint32_t to_left = 0, to_right = 0, left_triangles = 0;
   std::uint32_t moved[kFewItems];
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t id = ids[i];
-    const std::uint32_t is_right = centre[best_axis][i] > plane ? 1 : 0;
+    const std::uint32_t is_right = centre[i] > where ? 1 : 0;
     ids[to_left] = id;
     moved[to_right] = id;
     to_left += 1u - is_right;
     to_right += is_right;
+    left_triangles += (1u - is_right) * t.triangles[id];
   }
   for (std::uint32_t k = 0; k < to_right; ++k) ids[to_left + k] = moved[k];
-  *left = Range{range.begin, range.begin + to_left, to_left, empty_lanes()};
-  *right = Range{range.begin + to_left, range.end, to_right, empty_lanes()};
+  *left = Range{range.begin, range.begin + to_left, left_triangles, empty_lanes()};
+  *right = Range{range.begin + to_left, range.end, range.triangles - left_triangles, empty_lanes()};
 }
 
 }  // namespace

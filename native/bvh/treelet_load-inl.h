@@ -1,4 +1,4 @@
-// Codes of items, and items onto the desk. Included once per instruction set (no include guard).
+// Items onto the desk. Included once per instruction set (no include guard).
 
 HWY_BEFORE_NAMESPACE();
 namespace komorebi {
@@ -25,25 +25,9 @@ class VertexReader {
   float tail_[4] = {};
 };
 
-/// False only if the triangle's normal is certainly not null, as is_degenerate would find in
-/// double: each side is rounded once and each product once, far less than the bound here.
-HWY_INLINE bool may_be_degenerate(Vector4 a, Vector4 b, Vector4 c) {
-  const auto u = hn::Sub(b, a), v = hn::Sub(c, a);
-  const auto u_next = hn::Shuffle0321(u), v_next = hn::Shuffle0321(v);  // y z w x
-  const auto p = three_lanes(hn::Mul(u, v_next)), q = three_lanes(hn::Mul(u_next, v));
-  // Lanes 0 and 1 are z and x of the normal; y would need another turn and is left to the slow way.
-  const auto normal = hn::Abs(hn::Sub(p, q));
-  const auto bound = hn::Add(hn::Mul(hn::Add(hn::Abs(p), hn::Abs(q)), hn::Set(Float4(), 1e-5f)),
-                             hn::Set(Float4(), 1e-30f));
-  alignas(16) static constexpr float kTwo[4] = {1.0f, 1.0f, 0.0f, 0.0f};
-  const auto used = hn::Gt(hn::Load(Float4(), kTwo), hn::Zero(Float4()));
-  return hn::AllFalse(Float4(), hn::And(hn::Gt(normal, bound), used));
-}
-
-/// The padded box of a triangle, to the bit that of triangle_bounds.
-HWY_INLINE Lanes triangle_box(Vector4 a, Vector4 b, Vector4 c) {
-  const auto lo = three_lanes(hn::Min(hn::Min(a, b), c));
-  const auto minus_hi = three_lanes(hn::Neg(hn::Max(hn::Max(a, b), c)));
+/// From `lo` to `hi`, padded as triangle_bounds does it. The fourth lanes are not looked at.
+HWY_INLINE Lanes padded_box(Vector4 low_corner, Vector4 high_corner) {
+  const auto lo = three_lanes(low_corner), minus_hi = three_lanes(hn::Neg(high_corner));
   const auto size = hn::Max(hn::Abs(lo), hn::Abs(minus_hi));
   const auto most = hn::Max(size, hn::Max(hn::Shuffle0321(size), hn::Shuffle1032(size)));
   const float padding = hn::GetLane(most) * kPadding;
@@ -51,109 +35,173 @@ HWY_INLINE Lanes triangle_box(Vector4 a, Vector4 b, Vector4 c) {
   return make_box(hn::Sub(lo, by), hn::Sub(minus_hi, by));
 }
 
-HWY_INLINE hn::Vec<hn::FixedTag<std::uint32_t, 4>> spread_bits(
-    hn::Vec<hn::FixedTag<std::uint32_t, 4>> x) {
-  const hn::FixedTag<std::uint32_t, 4> d;
-  x = hn::And(hn::Or(x, hn::ShiftLeft<16>(x)), hn::Set(d, 0x030000ffu));
-  x = hn::And(hn::Or(x, hn::ShiftLeft<8>(x)), hn::Set(d, 0x0300f00fu));
-  x = hn::And(hn::Or(x, hn::ShiftLeft<4>(x)), hn::Set(d, 0x030c30c3u));
-  return hn::And(hn::Or(x, hn::ShiftLeft<2>(x)), hn::Set(d, 0x09249249u));
+/// The padded box of a triangle, to the bit that of triangle_bounds.
+HWY_INLINE Lanes triangle_box(Vector4 a, Vector4 b, Vector4 c) {
+  return padded_box(hn::Min(hn::Min(a, b), c), hn::Max(hn::Max(a, b), c));
 }
 
-/// Codes of triangles in one grid of 2^10 cells a side, four at a time.
-std::uint32_t code_triangles(const Items& items, const CellGrid& grid, std::uint32_t begin,
-                             std::uint32_t end, std::uint32_t left_out,
-                             KeyIndex<std::uint32_t>* out) {
-  const Float4 d;
-  const hn::FixedTag<std::uint32_t, 4> du;
-  const VertexReader vertex(items);
-  const std::uint32_t* corner = items.tri2vtx.data() + 3 * std::size_t{begin};
-  alignas(16) float centre[4][4] = {};
-  alignas(16) std::uint32_t code[4];
-  std::uint32_t dropped = 0;
-  const auto half = hn::Set(d, 0.5f);
-  for (std::uint32_t i = begin; i < end; i += 4) {
-    const std::uint32_t count = end - i < 4 ? end - i : 4;
-    bool degenerate[4] = {};
-    for (std::uint32_t k = 0; k < count; ++k, corner += 3) {
-      const auto a = vertex(corner[0]), b = vertex(corner[1]), c = vertex(corner[2]);
-      const auto lo = hn::Min(hn::Min(a, b), c), hi = hn::Max(hn::Max(a, b), c);
-      hn::Store(hn::Add(hn::Mul(lo, half), hn::Mul(hi, half)), d, centre[k]);
-      degenerate[k] = may_be_degenerate(a, b, c) && items.is_left_out(i + k);
-    }
-    hn::Vec<Float4> p[4];
-    hn::LoadInterleaved4(d, centre[0], p[0], p[1], p[2], p[3]);
-    auto sum = hn::Zero(du);
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto scaled =
-          hn::Mul(hn::Sub(p[axis], hn::Set(d, grid.lo[axis])), hn::Set(d, grid.cells_per_unit));
-      const auto inside = hn::Min(hn::Max(scaled, hn::Zero(d)), hn::Set(d, grid.cells - 1.0f));
-      const auto cell = hn::BitCast(du, hn::ConvertTo(hn::FixedTag<std::int32_t, 4>(), inside));
-      sum = hn::Or(hn::ShiftLeft<1>(sum), spread_bits(cell));
-    }
-    hn::Store(sum, du, code);
-    for (std::uint32_t k = 0; k < count; ++k) {
-      out[i + k] = {degenerate[k] ? left_out : code[k], i + k};
-      dropped += degenerate[k] ? 1 : 0;
-    }
-  }
-  return dropped;
-}
+/// Strips lie anywhere in the mesh's arrays: their indices are asked for first, then vertices.
+constexpr std::uint32_t kIndicesAhead = 32, kVerticesAhead = 16;
+static_assert(kIndicesAhead <= kFetchedAhead);
 
-std::uint32_t code(const Items& items, const MortonGrid& grid, std::uint32_t begin,
-                   std::uint32_t end, std::uint32_t left_out, KeyIndex<std::uint32_t>* out) {
-  if (items.are_triangles() && grid.is_one) {
-    return code_triangles(items, grid.core_grid, begin, end, left_out, out);
-  }
-  std::uint32_t dropped = 0;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const bool left = items.is_left_out(i);
-    out[i] = {left ? left_out : grid.code_30(items.box(i)), i};
-    dropped += left ? 1 : 0;
-  }
-  return dropped;
-}
-
-/// One bit of 64: different bits are different vertices.
-HWY_INLINE std::uint64_t vertex_bit(std::uint32_t vertex) {
-  return std::uint64_t{1} << ((vertex * 0x9E3779B1u) >> 26);
-}
-
-template <bool kWithCorners>
-void load(const Items& items, const std::uint32_t* indices, std::uint32_t count, Treelet& t) {
-  const VertexReader vertex(items);
-  const bool triangles = items.are_triangles();
-  // Triangles lie anywhere in the mesh's arrays: indices are asked for first, then vertices.
-  constexpr std::uint32_t kAhead = 32, kVerticesAhead = 16;
+/// Every strip's triangles, four for each, as the next strip's take the place of what is too much:
+/// how many a strip has cannot be predicted.
+template <bool kWithCodes>
+void list_triangles(const KeyIndex<std::uint32_t>* strips, std::uint32_t count, Treelet& t) {
+  const hn::FixedTag<std::uint32_t, kMostInStrip> d;
+  alignas(16) static constexpr std::uint32_t kFollowing[kMostInStrip] = {0, 1, 2, 3};
+  const auto following = hn::Load(d, kFollowing);
+  std::uint32_t at = 0, begin = 0, items = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t at = t.count++;
-    const std::uint32_t item = indices[i];
-    if (triangles && i + kAhead < count) {
-      hwy::Prefetch(&items.tri2vtx[3 * std::size_t{indices[i + kAhead]}]);
-    }
-    if (triangles && i + kVerticesAhead < count) {
-      const std::uint32_t* later = &items.tri2vtx[3 * std::size_t{indices[i + kVerticesAhead]}];
-      for (int k = 0; k < 3; ++k) hwy::Prefetch(&items.vtx2xyz[3 * std::size_t{later[k]}]);
-    }
-    t.item[at] = item;
-    t.ids[at] = at;
-    if (triangles) {
-      const std::uint32_t* corner = &items.tri2vtx[3 * std::size_t{item}];
-      if (kWithCorners) {
-        for (int k = 0; k < 3; ++k) t.corner[at][k] = corner[k];
-        t.corner[at][3] = kNone;
-        t.vertex_bits[at] = vertex_bit(corner[0]) | vertex_bit(corner[1]) | vertex_bit(corner[2]);
-      }
-      store_box(triangle_box(vertex(corner[0]), vertex(corner[1]), vertex(corner[2])), t.box[at].v);
-    } else {
-      const Aabb& box = items.boxes[item];
-      for (int k = 0; k < 3; ++k) {
-        t.box[at].v[k] = box.lo[k];
-        t.box[at].v[4 + k] = -box.hi[k];
-      }
-      t.box[at].v[3] = t.box[at].v[7] = 0.0f;
-    }
+    const std::uint32_t key = strips[i].key, strip = strips[i].index;
+    hn::StoreU(hn::Add(hn::Set(d, strip_first(strip)), following), d, t.primitive + at);
+    if (kWithCodes) hn::StoreU(hn::Set(d, key), d, t.code + at);
+    const bool is_new = kWithCodes || key == 0;
+    items += is_new ? 1 : 0;
+    begin = is_new ? at : begin;
+    at += strip_count(strip);
+    t.start[items - 1] = begin;
+    t.triangles[items - 1] = at - begin;
   }
+  t.count = items;
+  t.triangle_count = at;
+  std::fill_n(t.primitive + at, kFetchedAhead, t.primitive[at - 1]);
+}
+
+/// The box of an instance, or of a cluster of the top.
+HWY_INLINE Lanes instance_box(const Aabb& box) {
+  alignas(16) float lo[4] = {box.lo.x, box.lo.y, box.lo.z, 0.0f};
+  alignas(16) float minus_hi[4] = {-box.hi.x, -box.hi.y, -box.hi.z, 0.0f};
+  return make_box(hn::Load(Float4(), lo), hn::Load(Float4(), minus_hi));
+}
+
+/// Calls body(i, corner) for the desk's triangles, having asked for what it reads.
+template <class Body>
+HWY_INLINE void for_each_triangle(const Items& items, const Treelet& t, const Body& body) {
+  const auto corners = [&](std::uint32_t i) {
+    return &items.tri2vtx[3 * std::size_t{t.primitive[i]}];
+  };
+  for (std::uint32_t i = 0; i < t.triangle_count; ++i) {
+    hwy::Prefetch(corners(i + kIndicesAhead));
+    const std::uint32_t* const later = corners(i + kVerticesAhead);
+    for (int k = 0; k < 3; ++k) hwy::Prefetch(&items.vtx2xyz[3 * std::size_t{later[k]}]);
+    body(i, corners(i));
+  }
+}
+
+HWY_INLINE void put_corners(const std::uint32_t* corner, std::uint32_t i, Treelet& t) {
+  for (int k = 0; k < 3; ++k) t.corner[i][k] = corner[k];
+  t.corner[i][3] = kNone;
+}
+
+void load_triangles(const Items& items, bool with_boxes, Treelet& t) {
+  const VertexReader vertex(items);
+  if (!items.are_triangles()) {
+    for (std::uint32_t i = 0; i < t.count; ++i) {
+      store_box(instance_box(items.boxes[t.primitive[i]]), t.triangle_box[i].v);
+    }
+  } else if (with_boxes) {
+    for_each_triangle(items, t, [&](std::uint32_t i, const std::uint32_t* corner) {
+      put_corners(corner, i, t);
+      store_box(triangle_box(vertex(corner[0]), vertex(corner[1]), vertex(corner[2])),
+                t.triangle_box[i].v);
+    });
+  } else {
+    for_each_triangle(items, t, [&](std::uint32_t i, const std::uint32_t* corner) {
+      put_corners(corner, i, t);
+    });
+  }
+}
+
+void load(const Items& items, const KeyIndex<std::uint32_t>* strips, std::uint32_t count,
+          Treelet& t) {
+  list_triangles<false>(strips, count, t);
+  load_triangles(items, true, t);
+}
+
+void load_codes(const Items& items, const KeyIndex<std::uint32_t>* strips, std::uint32_t count,
+                bool with_boxes, Treelet& t) {
+  list_triangles<true>(strips, count, t);
+  load_triangles(items, with_boxes, t);
+}
+
+/// Two neighbours become one item if the area of the common box is at most that of the larger one
+/// and this share of the smaller one's…
+constexpr float kOfSmaller = 0.3f;
+/// …and this share of a square over all items: single walls decide what planes cost.
+constexpr float kLargestStrip = 1e-3f;
+
+/// The box of up to four triangles.
+HWY_INLINE Lanes strip_box(const Treelet& t, std::uint32_t item) {
+  const std::uint32_t first = t.start[item], last = first + t.triangles[item] - 1;
+  Lanes box = merge(load_box(t.triangle_box[first].v), load_box(t.triangle_box[last].v));
+  for (std::uint32_t k = 1; k + 1 < kMostInStrip; ++k) {
+    const std::uint32_t at = first + k < last ? first + k : last;
+    box = merge(box, load_box(t.triangle_box[at].v));
+  }
+  return box;
+}
+
+/// Clusters have so many items at most: the top tree's planes cut between them.
+constexpr std::uint32_t kClusterItems = 4;
+
+/// Bit i of `joined`: strip i is one item with that before it.
+void join_strips(const Treelet& t, float scale, std::uint8_t* joined) {
+  float last_area = 0.0f;
+  joined[0] = 0;
+  for (std::uint32_t i = 0; i < t.count; ++i) {
+    const Lanes box = load_box(t.box[i].v);
+    const float area = area_of(box, scale);
+    if (i > 0) {
+      const float both = area_of(merge(box, load_box(t.box[i - 1].v)), scale);
+      const float most = max_of(area, last_area) + kOfSmaller * min_of(area, last_area);
+      // Two of two triangles have eight vertices at most.
+      const bool fits = both <= most && both <= kLargestStrip &&
+                        (t.triangles[i] <= 2) & (t.triangles[i - 1] <= 2);
+      joined[i] = fits && joined[i - 1] == 0 ? 1 : 0;
+    }
+    last_area = area;
+  }
+}
+
+std::uint32_t cluster(float largest_area, float scale, std::uint32_t first, Treelet& t,
+                      BinaryNode* clusters) {
+  for (std::uint32_t i = 0; i < t.count; ++i) store_box(strip_box(t, i), t.box[i].v);
+  std::uint8_t joined[kRunSize + kClusterItems];
+  join_strips(t, scale, joined);
+  std::uint32_t made = 0;
+  for (std::uint32_t begin = 0; begin < t.count;) {
+    const std::uint32_t rest = t.count - begin;
+    std::uint32_t length = rest < kClusterItems ? rest : kClusterItems;
+    if (rest > kClusterItems) {
+      // Where the codes part most: between the last triangles and the first ones of items.
+      std::uint32_t highest = 0;
+      for (std::uint32_t k = kClusterItems; k >= 1; --k) {
+        const std::uint32_t next = t.start[begin + k], jump = t.code[next - 1] ^ t.code[next];
+        length = jump > highest ? k : length;
+        highest = jump > highest ? jump : highest;
+      }
+    }
+    Lanes box = load_box(t.box[begin].v);
+    for (std::uint32_t k = 1; k < kClusterItems; ++k) {
+      box = merge(box, load_box(t.box[begin + (k < length ? k : length - 1)].v));
+    }
+    const std::uint32_t end = begin + length;
+    const auto put = [&](std::uint32_t from, std::uint32_t to, Lanes its) {
+      const std::uint32_t triangles = t.start[to - 1] + t.triangles[to - 1] - t.start[from];
+      const std::uint32_t with_last = joined[from + 1] * 2u + joined[from + 2] * 4u + joined[from + 3] * 8u;
+      const std::uint32_t its_own = (1u << (to - from)) - 1;
+      write_node(clusters[made++], its, first + from,
+                 ClusterInfo(to - from, with_last & its_own, triangles).packed());
+    };
+    if (area_of(box, 1.0f) <= largest_area) {
+      put(begin, end, box);
+    } else {
+      for (std::uint32_t i = begin; i < end; ++i) put(i, i + 1, load_box(t.box[i].v));
+    }
+    begin = end;
+  }
+  return made;
 }
 
 }  // namespace

@@ -7,9 +7,6 @@
 namespace komorebi {
 namespace {
 
-/// A leaf takes no more for each of its items.
-constexpr std::size_t kLeafBytes = std::size_t{ClusterView::units(1, 3)} * kClusterUnit;
-
 std::size_t count_roots(std::span<const WideTreelet> treelets) {
   std::size_t count = 0;
   for (const WideTreelet& treelet : treelets) count += treelet.room;
@@ -42,7 +39,7 @@ TreeletRow::Shelf TreeletRow::take_shelf(std::uint32_t treelet, std::size_t item
     const std::size_t room =
         std::max<std::size_t>(items, std::min<std::size_t>(kTreeletSize, items_.count()));
     shelf.nodes = Scratch<WideNode>(room);
-    shelf.leaves = Scratch<std::byte>(room * kLeafBytes);
+    shelf.leaves = Scratch<std::byte>(room * kLeafBytes + kLeafMostBytes);
   }
   treelets_[treelet].root_nodes = shelf.nodes.data();
   treelets_[treelet].root_leaves = shelf.leaves.data();

@@ -9,15 +9,41 @@ namespace {
 /// Deepest level of a treelet that is split by area; from there on halves, ten levels at most.
 constexpr std::uint32_t kTreeletMedianDepth = 28;
 
+/// One bit of 64: different bits are different vertices.
+HWY_INLINE std::uint64_t vertex_bit(std::uint32_t vertex) {
+  return std::uint64_t{1} << ((vertex * 0x9E3779B1u) >> 26);
+}
+
+void store_vertex_bits(Treelet& t) {
+  std::uint64_t bits[kTreeletSize];
+  for (std::uint32_t i = 0; i < t.triangle_count; ++i) {
+    const std::uint32_t* const corner = t.corner[i];
+    bits[i] = vertex_bit(corner[0]) | vertex_bit(corner[1]) | vertex_bit(corner[2]);
+  }
+  for (std::uint32_t i = 0; i < t.count; ++i) {
+    const std::uint32_t first = t.start[i], last = first + t.triangles[i] - 1;
+    const std::uint32_t second = first + 1 < last ? first + 1 : last;
+    const std::uint32_t third = first + 2 < last ? first + 2 : last;
+    t.vertex_bits[i] = bits[first] | bits[second] | bits[third] | bits[last];
+    t.ids[i] = i;
+  }
+}
+
 class SahTreelet {
  public:
   SahTreelet(LeafLimit limit, float scale, Treelet& t)
-      : limit_(limit), scale_(scale), t_(t), list_{t, t.ids, t.moved} {}
+      : limit_(limit), scale_(scale), t_(t), list_{t} {}
 
   void build() {
     for (std::uint32_t i = 0; i < t_.count; ++i) {
-      hn::Store(centre_and_side_of(load_box(t_.box[i].v)), Float4(), t_.centre[i]);
+      const Lanes box = strip_box(t_, i);
+      store_box(box, t_.box[i].v);
+      hn::Store(centre_and_side_of(box), Float4(), t_.centre[i]);
+      // The last bits of the side are of no account, and so near the centre.
+      const std::uint32_t side = std::bit_cast<std::uint32_t>(t_.centre[i][3]);
+      t_.centre[i][3] = std::bit_cast<float>((side & ~3u) | (t_.triangles[i] - 1));
     }
+    store_vertex_bits(t_);
     t_.node_count = 1;
     add(0, 0, measure_range(list_, 0, t_.count));
   }
@@ -25,7 +51,9 @@ class SahTreelet {
  private:
   void add(std::uint32_t index, std::uint32_t depth, const Range& range) {
     const std::uint32_t count = range.end - range.begin;
-    if (const std::uint32_t info = leaf_info(t_, range.begin, range.end, limit_); info != 0) {
+    if (const std::uint32_t info =
+            leaf_info(t_, range.begin, range.end, range.triangles, limit_);
+        info != 0) {
       write_node(t_.nodes[index], box_of_run(t_, range.begin, range.end), range.begin, info);
       return;
     }
@@ -51,18 +79,14 @@ class SahTreelet {
   ItemList list_;
 };
 
-void sah(LeafLimit limit, float scale, Treelet& treelet) {
-  SahTreelet(limit, scale, treelet).build();
-}
-
 ClusterList list_of(const Clusters& clusters) {
-  return {clusters.cluster, clusters.ids, clusters.moved};
+  return {clusters.cluster, clusters.moved};
 }
 
 void store_range(const Range& range, ClusterRange* to) {
   to->begin = range.begin;
   to->end = range.end;
-  to->items = range.items;
+  to->triangles = range.triangles;
   store_box(range.centres, to->centres.v);
 }
 
@@ -72,7 +96,7 @@ void measure(const Clusters& clusters, ClusterRange& range) {
 
 void split(const Clusters& clusters, float scale, bool in_halves, const ClusterRange& range,
            ClusterRange* left, ClusterRange* right) {
-  const Range whole{range.begin, range.end, range.items, load_box(range.centres.v)};
+  const Range whole{range.begin, range.end, range.triangles, load_box(range.centres.v)};
   Range parts[2];
   if (in_halves) {
     split_in_halves(list_of(clusters), whole, &parts[0], &parts[1]);
@@ -86,7 +110,7 @@ void split(const Clusters& clusters, float scale, bool in_halves, const ClusterR
 void bound(const Clusters& clusters, const ClusterRange& range, WideBox* box) {
   Lanes all = empty_lanes();
   for (std::uint32_t i = range.begin; i < range.end; ++i) {
-    all = merge(all, node_box(clusters.cluster[clusters.ids[i]]));
+    all = merge(all, node_box(clusters.cluster[i]));
   }
   store_box(all, box->v);
 }

@@ -10,18 +10,20 @@ namespace {
 
 constexpr unsigned kMostDigitBits = 11;
 constexpr std::size_t kMinimumShare = 8192;  ///< items below which a worker does not pay
-constexpr std::size_t kPollEvery = 65536;    ///< items between two looks at the cancel flag
 
 constexpr std::size_t kFewItems = 32768;  ///< for which buckets do not pay
 
 using Histogram = std::array<std::uint32_t, std::size_t{1} << kMostDigitBits>;
 
-/// Calls body(begin, end) for pieces of [begin, end), polling between them.
-template <class Body>
-void poll_through(std::size_t begin, std::size_t end, const Cancel& cancel, Body&& body) {
-  for (; begin < end && !cancel.raised(); begin += kPollEvery) {
-    body(begin, std::min(end, begin + kPollEvery));
+constexpr std::size_t kMostInPiece = 16384;  ///< the cancel flag is looked at in between
+
+template <class Key>
+std::vector<std::span<KeyIndex<Key>>> pieces_of(std::span<KeyIndex<Key>> items, std::size_t most) {
+  std::vector<std::span<KeyIndex<Key>>> pieces;
+  for (std::size_t begin = 0; begin < items.size(); begin += most) {
+    pieces.push_back(items.subspan(begin, std::min(most, items.size() - begin)));
   }
+  return pieces;
 }
 
 /// Where things go that are sorted by one digit, at first how many there are.
@@ -30,19 +32,21 @@ using Places = std::vector<Histogram>;  // one a worker
 /// One stable pass by the digit of `bits` bits at `shift`, by all workers. Returns the largest
 /// number of items with the same digit; if that is more than `most`, nothing is moved.
 template <class Key>
-std::size_t part(std::span<const KeyIndex<Key>> from, KeyIndex<Key>* to, unsigned shift,
-                 unsigned bits, std::size_t most, Places& places, ThreadPool& pool,
-                 const Cancel& cancel) {
+std::size_t part(SortPieces<Key> from, KeyIndex<Key>* to, unsigned shift, unsigned bits,
+                 std::size_t most, Places& places, ThreadPool& pool, const Cancel& cancel) {
   const auto workers = static_cast<unsigned>(places.size());
-  const auto share = [&](unsigned worker) { return from.size() * worker / workers; };
+  const auto for_each_of = [&](unsigned worker, auto&& body) {
+    const std::size_t end = from.size() * (worker + 1) / workers;
+    for (std::size_t k = from.size() * worker / workers; k < end && !cancel.raised(); ++k) {
+      for (const KeyIndex<Key>& item : from[k]) body(item);
+    }
+  };
   const std::size_t digits = std::size_t{1} << bits;
   const auto digit = [&](Key key) { return static_cast<std::size_t>(key >> shift) & (digits - 1); };
   pool.run(workers, [&](unsigned worker) {
     Histogram& histogram = places[worker];
     std::fill_n(histogram.begin(), digits, 0u);
-    poll_through(share(worker), share(worker + 1), cancel, [&](std::size_t i, std::size_t end) {
-      for (; i < end; ++i) ++histogram[digit(from[i].key)];
-    });
+    for_each_of(worker, [&](const KeyIndex<Key>& item) { ++histogram[digit(item.key)]; });
   });
   if (cancel.raised()) throw Cancelled();
 
@@ -62,9 +66,7 @@ std::size_t part(std::span<const KeyIndex<Key>> from, KeyIndex<Key>* to, unsigne
 
   pool.run(workers, [&](unsigned worker) {
     Histogram& next = places[worker];
-    poll_through(share(worker), share(worker + 1), cancel, [&](std::size_t i, std::size_t end) {
-      for (; i < end; ++i) to[next[digit(from[i].key)]++] = from[i];
-    });
+    for_each_of(worker, [&](const KeyIndex<Key>& item) { to[next[digit(item.key)]++] = item; });
   });
   if (cancel.raised()) throw Cancelled();
   return largest;
@@ -79,7 +81,8 @@ void sort_by_passes(std::span<KeyIndex<Key>> items, std::span<KeyIndex<Key>> scr
   const unsigned digit_bits = passes > 0 ? (bits + passes - 1) / passes : 0;
   for (unsigned pass = 0; pass < passes; ++pass) {
     const std::size_t most = items.size() - 1;  // a pass in which all agree is left out
-    if (part<Key>(from, to.data(), pass * digit_bits, digit_bits, most, places, pool, cancel) <=
+    const auto pieces = pieces_of(from, kMostInPiece);
+    if (part<Key>(pieces, to.data(), pass * digit_bits, digit_bits, most, places, pool, cancel) <=
         most) {
       std::swap(from, to);
     }
@@ -146,19 +149,20 @@ void sort_bucket(KeyIndex<Key>* from, KeyIndex<Key>* to, std::size_t count, unsi
 /// Most significant digit first, and then the buckets, each in a worker's cache. False, and nothing
 /// done, if too many items are in one bucket.
 template <class Key>
-bool sort_by_buckets(std::span<KeyIndex<Key>> items, std::span<KeyIndex<Key>> scratch,
+bool sort_by_buckets(SortPieces<Key> pieces, std::size_t count, std::span<KeyIndex<Key>> scratch,
                      Places& places, ThreadPool& pool, const Cancel& cancel, unsigned bits) {
   const unsigned rest = bits - kMostDigitBits;
-  const std::size_t most = items.size() / 8;
-  if (part<Key>(items, scratch.data(), rest, kMostDigitBits, most, places, pool, cancel) > most) {
+  const std::size_t most = count / 8;
+  if (part<Key>(pieces, scratch.data(), rest, kMostDigitBits, most, places, pool, cancel) > most) {
     return false;
   }
+  KeyIndex<Key>* const items = pieces.front().data();
   // Where the last worker stopped writing a bucket, it ends.
   const Histogram& ends = places.back();
   pool.for_each_chunk(ends.size(), 8, [&](std::size_t first, std::size_t last) {
     for (std::size_t d = first; d < last && !cancel.raised(); ++d) {
       const std::size_t begin = d > 0 ? ends[d - 1] : 0;
-      sort_bucket(scratch.data() + begin, items.data() + begin, ends[d] - begin, rest);
+      sort_bucket(scratch.data() + begin, items + begin, ends[d] - begin, rest);
     }
   });
   if (cancel.raised()) throw Cancelled();
@@ -166,30 +170,30 @@ bool sort_by_buckets(std::span<KeyIndex<Key>> items, std::span<KeyIndex<Key>> sc
 }
 
 template <class Key>
-void sort(std::span<KeyIndex<Key>> items, std::span<KeyIndex<Key>> scratch, ThreadPool& pool,
+void sort(SortPieces<Key> pieces, std::span<KeyIndex<Key>> scratch, ThreadPool& pool,
           const Cancel& cancel, unsigned bits) {
-  if (scratch.size() < items.size()) {
-    throw std::invalid_argument("radix_sort: scratch is too small");
-  }
-  if (items.empty()) return;
-  Places places(std::clamp<std::size_t>(items.size() / kMinimumShare, 1, pool.size()));
-  const bool is_large = items.size() >= kFewItems && bits > 2 * kMostDigitBits;
-  if (is_large && sort_by_buckets(items, scratch, places, pool, cancel, bits)) return;
-  sort_by_passes(items, scratch, places, pool, cancel, bits);
+  std::size_t count = 0;
+  for (const auto& piece : pieces) count += piece.size();
+  if (scratch.size() < count) throw std::invalid_argument("radix_sort: scratch is too small");
+  if (count == 0) return;
+  Places places(std::clamp<std::size_t>(count / kMinimumShare, 1, pool.size()));
+  const bool is_large = count >= kFewItems && bits > 2 * kMostDigitBits;
+  if (is_large && sort_by_buckets(pieces, count, scratch, places, pool, cancel, bits)) return;
+  KeyIndex<Key>* end = pieces.front().data();
+  for (const auto& piece : pieces) end = std::copy(piece.begin(), piece.end(), end);
+  sort_by_passes<Key>({pieces.front().data(), count}, scratch, places, pool, cancel, bits);
 }
 
 }  // namespace
 
-void radix_sort(std::span<KeyIndex<std::uint32_t>> items,
-                std::span<KeyIndex<std::uint32_t>> scratch, ThreadPool& pool, const Cancel& cancel,
-                unsigned bits) {
-  sort(items, scratch, pool, cancel, bits);
+void radix_sort(SortPieces<std::uint32_t> pieces, std::span<KeyIndex<std::uint32_t>> scratch,
+                ThreadPool& pool, const Cancel& cancel, unsigned bits) {
+  sort(pieces, scratch, pool, cancel, bits);
 }
 
-void radix_sort(std::span<KeyIndex<std::uint64_t>> items,
-                std::span<KeyIndex<std::uint64_t>> scratch, ThreadPool& pool, const Cancel& cancel,
-                unsigned bits) {
-  sort(items, scratch, pool, cancel, bits);
+void radix_sort(SortPieces<std::uint64_t> pieces, std::span<KeyIndex<std::uint64_t>> scratch,
+                ThreadPool& pool, const Cancel& cancel, unsigned bits) {
+  sort(pieces, scratch, pool, cancel, bits);
 }
 
 }  // namespace komorebi

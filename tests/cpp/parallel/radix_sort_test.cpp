@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <random>
+#include <span>
 #include <vector>
 
 namespace komorebi {
 namespace {
+
+constexpr std::size_t kGap = 100;
 
 template <class Key>
 void expect_sorted_as_std(const std::vector<Key>& keys) {
@@ -21,9 +24,20 @@ void expect_sorted_as_std(const std::vector<Key>& keys) {
   for (const unsigned threads : {1u, 2u, 7u}) {
     ThreadPool pool(threads);
     const Cancel cancel;
-    std::vector<KeyIndex<Key>> items = unsorted, scratch(keys.size());
-    radix_sort(items, scratch, pool, cancel);
-    for (std::size_t i = 0; i < items.size(); ++i) {
+    // In pieces of different sizes, some empty, with gaps between them.
+    std::vector<KeyIndex<Key>> items(unsorted.size() + 4 * kGap), scratch(keys.size());
+    std::vector<std::span<KeyIndex<Key>>> pieces;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::size_t begin = unsorted.size() * k * k / 16;
+      const std::size_t end = unsorted.size() * (k + 1) * (k + 1) / 16;
+      const std::span piece = std::span(items).subspan(begin + k * kGap, end - begin);
+      std::copy_n(unsorted.begin() + static_cast<std::ptrdiff_t>(begin), end - begin,
+                  piece.begin());
+      pieces.push_back(piece);
+      if (k == 1) pieces.push_back(piece.subspan(piece.size()));
+    }
+    radix_sort(pieces, scratch, pool, cancel);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
       ASSERT_EQ(items[i].key, expected[i].key) << "position " << i << ", " << threads << " threads";
       ASSERT_EQ(items[i].index, expected[i].index) << "position " << i;
     }
@@ -68,7 +82,8 @@ TEST(RadixSort, StopsWhenCancelled) {
   Cancel cancel;
   cancel.raise();
   std::vector<KeyIndex<std::uint32_t>> items(100000), scratch(items.size());
-  EXPECT_THROW(radix_sort(items, scratch, pool, cancel), Cancelled);
+  const std::vector<std::span<KeyIndex<std::uint32_t>>> pieces{items};
+  EXPECT_THROW(radix_sort(pieces, scratch, pool, cancel), Cancelled);
 }
 
 }  // namespace
