@@ -85,6 +85,7 @@ HWY_INLINE PlannedChildren planned_children(const BinaryNode* nodes, std::uint32
 /// What a leaf holds: primitives, and their corners as LeafCorners wants them.
 struct LeafItems {
   alignas(64) Corners4 corner[kClusterTriangles];
+  std::uint32_t firsts;
   std::uint32_t primitive[kClusterTriangles];
 };
 
@@ -93,6 +94,7 @@ struct TreeletLeaves {
   const Treelet& t;
   HWY_INLINE void get(const BinaryNode& leaf, LeafItems& to) const {
     const hn::FixedTag<std::uint32_t, 4> d;
+    to.firsts = t.moved[leaf.first];
     for (std::uint32_t i = leaf.first, at = 0; at < leaf.leaf_count(); ++i) {
       const std::uint32_t start = t.start[t.ids[i]], end = start + t.triangles[t.ids[i]];
       for (std::uint32_t k = start; k < end; ++k, ++at) {
@@ -116,6 +118,7 @@ struct TreeLeaves {
       }
       to.corner[i][3] = kNone;
     }
+    if (items.are_triangles()) to.firsts = LeafCorners(to.corner).firsts(leaf.leaf_count());
   }
 };
 
@@ -179,8 +182,7 @@ class Emitter {
     leaves_.get(leaf, its);
     std::byte* const record = to_.leaves + to_.leaf_units * items_.leaf_unit();
     if (items_.are_triangles()) {
-      const std::uint32_t firsts = LeafCorners(its.corner).firsts(leaf.leaf_count());
-      write_cluster(vertex_, leaf.leaf_count(), its.corner, firsts, its.primitive, record);
+      write_cluster(vertex_, leaf.leaf_count(), its.corner, its.firsts, its.primitive, record);
     } else {
       std::memcpy(record, its.primitive, sizeof(its.primitive[0]));
     }

@@ -26,7 +26,7 @@ WideTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cancel)
     const auto load = [&](std::uint32_t i, Treelet& t) {
       KeyIndex<std::uint32_t> room[kRunSize];
       const Run run = top.runs[i];
-      kernel.load_codes(items, order.narrow_run(run, room), run.count, false, t);
+      kernel.load_corners(items, order.narrow_run(run, room), run.count, t);
     };
     grove.grow(static_cast<std::uint32_t>(top.runs.size()), load, kernel.pack_treelet);
     wide = grove.finish();

@@ -5,6 +5,7 @@
 // SAH over clusters, a third as many as items (Ganestam et al. 2015, "Bonsai", has treelets in
 // their place, and loses where Morton cells cut). Below, what has become small enough for a
 // worker's nearest cache is split item by item.
+#include <condition_variable>
 #include <mutex>
 
 #include "bvh/grove.h"
@@ -17,7 +18,7 @@ namespace {
 
 /// Clusters larger than so many median items are broken up: they would blunt the top's planes.
 constexpr float kLargestCluster = 8.0f;
-/// Ranges of fewer clusters are finished by the worker that met them.
+/// Ranges of no more clusters are finished by the worker that met them.
 constexpr std::uint32_t kSmallRange = 4096;
 /// Deepest level of the top that is split by area; then halves, at most 27 levels.
 constexpr std::uint32_t kTopMedianDepth = 28;
@@ -55,6 +56,7 @@ class SahBuilder {
     const std::size_t runs = (order_.count + kRunSize - 1) / kRunSize;
     std::vector<std::uint32_t> base(runs), count(runs);
     std::atomic<std::uint32_t> next{0};
+    const ClusterLimits limits{kLargestCluster * order_.sample_area, scale_};
     pool_.for_each_chunk(runs, 4, [&](std::size_t begin, std::size_t end) {
       Scratch<Treelet> desk(1);
       Treelet& t = desk[0];
@@ -62,10 +64,9 @@ class SahBuilder {
         const auto first = static_cast<std::uint32_t>(i) * kRunSize;
         const Run run{first, std::min(kRunSize, order_.count - first)};
         KeyIndex<std::uint32_t> room[kRunSize];
-        kernel_.load_codes(items_, order_.narrow_run(run, room), run.count, true, t);
         BinaryNode found[kRunSize];
-        count[i] =
-            kernel_.cluster(kLargestCluster * order_.sample_area, scale_, first, t, found);
+        count[i] = kernel_.cluster(items_, order_.narrow_run(run, room), run.count, limits, first, t,
+                                   found);
         base[i] = next.fetch_add(count[i]);
         std::copy_n(found, count[i], &moved_[base[i]]);
       }
@@ -101,25 +102,41 @@ class SahBuilder {
 
   Clusters clusters() { return {cluster_.data(), moved_.data()}; }
 
+  /// Large ranges wait in a list from which whoever is free takes one.
   void split_top() {
     treelets_ = Scratch<ClusterRange>(cluster_count_);
-    // Rounds over the ranges that are still large, all at once.
-    std::vector<Part> now{{0, 0, all_}}, next;
-    while (!now.empty()) {
-      next.assign(2 * now.size(), Part{});
-      pool_.for_each_chunk(now.size(), 1, [&](std::size_t i, std::size_t) {
-        if (!cancel_.raised()) split(now[i], &next[2 * i]);
-      });
-      check(cancel_);
-      now.clear();
-      for (const Part& part : next) {
-        if (part.range.end > part.range.begin) now.push_back(part);
+    std::vector<Part> waiting{{0, 0, all_}};
+    waiting.reserve(2 * std::size_t{cluster_count_} / kSmallRange + 2);
+    std::mutex mutex;
+    std::condition_variable changed;
+    unsigned busy = 0;
+    const auto hand_over = [&](const Part& part) {
+      {
+        const std::lock_guard lock(mutex);
+        waiting.push_back(part);
       }
-    }
+      changed.notify_one();
+    };
+    pool_.run(pool_.size(), [&](unsigned) {
+      std::unique_lock lock(mutex);
+      while (true) {
+        changed.wait(lock, [&] { return !waiting.empty() || busy == 0; });
+        if (waiting.empty()) return;
+        const Part part = waiting.back();
+        waiting.pop_back();
+        ++busy;
+        lock.unlock();
+        split(part, hand_over);
+        lock.lock();
+        --busy;
+        if (busy == 0) changed.notify_all();
+      }
+    });
+    check(cancel_);
   }
 
-  /// Parts a range until it is a treelet; `large`, if any, takes the two parts that others may do.
-  void split(const Part& part, Part* large) {
+  /// Parts a range until it is treelets, but for those of its parts that others may do.
+  void split(const Part& part, FunctionRef<void(const Part&)> hand_over) {
     if (part.range.triangles <= kTreeletSize) {
       const std::uint32_t treelet = treelet_count_.fetch_add(1);
       treelets_[treelet] = part.range;
@@ -140,14 +157,12 @@ class SahBuilder {
     right.node = child + 1;
     kernel_.split(clusters(), scale_, part.depth >= kTopMedianDepth, part.range, &left.range,
                   &right.range);
-    const bool is_large = large != nullptr && part.range.end - part.range.begin > kSmallRange;
-    if (is_large) {
-      large[0] = left;
-      large[1] = right;
+    if (right.range.end - right.range.begin > kSmallRange) {
+      hand_over(right);
     } else {
-      split(left, nullptr);
-      split(right, nullptr);
+      split(right, hand_over);
     }
+    split(left, hand_over);
   }
 
   /// Along the top tree: the order in which they were made depends on the threads.

@@ -120,20 +120,24 @@ HWY_INLINE void take_corners(const Treelet& t, std::uint32_t begin, std::uint32_
 }
 
 /// BinaryNode::info of a leaf over so many triangles at positions [begin, end), or 0 if that would
-/// hold too much.
-HWY_INLINE std::uint32_t leaf_info(const Treelet& t, std::uint32_t begin, std::uint32_t end,
+/// hold too much. Its first corners go to t.moved[begin], which nobody else needs.
+HWY_INLINE std::uint32_t leaf_info(Treelet& t, std::uint32_t begin, std::uint32_t end,
                                    std::uint32_t triangles, LeafLimit limit) {
   if (triangles > limit.items) return 0;
   if (limit.vertices == kNone) return triangles;
-  if (triangles == 1) return 1u | 3u << 8;
+  if (triangles == 1) {
+    t.moved[begin] = 7;
+    return 1u | 3u << 8;
+  }
   std::uint64_t seen = 0;
   for (std::uint32_t i = begin; i < end; ++i) seen |= t.vertex_bits[t.ids[i]];
   // Different bits are different vertices: most sets with too many are seen here.
   if (static_cast<std::uint32_t>(std::popcount(seen)) > limit.vertices) return 0;
   alignas(64) Corners4 corner[kClusterTriangles];
   take_corners(t, begin, end, corner);
-  const auto vertices =
-      static_cast<std::uint32_t>(std::popcount(LeafCorners(corner).firsts(triangles)));
+  const std::uint32_t firsts = LeafCorners(corner).firsts(triangles);
+  const auto vertices = static_cast<std::uint32_t>(std::popcount(firsts));
+  t.moved[begin] = firsts;
   return vertices <= limit.vertices ? triangles | vertices << 8 : 0;
 }
 

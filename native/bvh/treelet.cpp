@@ -41,7 +41,7 @@ const BuildKernel kBuildKernel = {&HWY_STR(HWY_NAMESPACE)[2],  // N_AVX2: "AVX2"
                                   &code<std::uint32_t>,
                                   &code<std::uint64_t>,
                                   &load,
-                                  &load_codes,
+                                  &load_corners,
                                   &cluster,
                                   &measure,
                                   &split,

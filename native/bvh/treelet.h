@@ -112,6 +112,11 @@ struct ClusterRange {
   WideBox centres;      ///< bounds of the centres; in v[3] minus the longest side of a box
 };
 
+struct ClusterLimits {
+  float largest_area;  ///< of one that has more than one strip
+  float scale;         ///< as for BuildKernel::sah_treelet
+};
+
 struct StripCount {
   std::uint32_t strips;
   std::uint32_t left_out;  ///< items that no ray can meet: they are in none
@@ -131,14 +136,14 @@ struct BuildKernel {
   /// with that before it.
   void (*load)(const Items& items, const KeyIndex<std::uint32_t>* strips, std::uint32_t count,
                Treelet& treelet);
-  /// The same for pack_treelet() and cluster(): keys are codes of 31 bits, each strip is an item.
-  void (*load_codes)(const Items& items, const KeyIndex<std::uint32_t>* strips,
-                     std::uint32_t count, bool with_boxes, Treelet& treelet);
-  /// Cuts what is on the desk into clusters of up to three neighbours, `first` being
-  /// the place of the first strip. None is larger than `largest_area`, if it has more than one;
-  /// `scale` is that of sah_treelet(). Returns how many.
-  std::uint32_t (*cluster)(float largest_area, float scale, std::uint32_t first, Treelet& treelet,
-                           BinaryNode* clusters);
+  /// The same for pack_treelet(), without boxes: keys are codes of 31 bits, each strip is an item.
+  void (*load_corners)(const Items& items, const KeyIndex<std::uint32_t>* strips,
+                       std::uint32_t count, Treelet& treelet);
+  /// Cuts strips, whose keys are codes, into clusters of up to four neighbours, `first` being the
+  /// place of the first strip. Returns how many.
+  std::uint32_t (*cluster)(const Items& items, const KeyIndex<std::uint32_t>* strips,
+                           std::uint32_t count, const ClusterLimits& limits, std::uint32_t first,
+                           Treelet& treelet, BinaryNode* clusters);
   /// Items and centres of a range.
   void (*measure)(const Clusters& clusters, ClusterRange& range);
   /// Parts a range by the surface-area heuristic, or in halves; both parts are not empty.

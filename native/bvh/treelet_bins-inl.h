@@ -117,7 +117,7 @@ HWY_INLINE Plane cheapest_plane(const Bins& bins, const float* side, int count, 
 }
 
 HWY_INLINE int bin_count(std::uint32_t length) {
-  return length > 1024 ? kMostBins : length > 256 ? kMostBins / 2 : length > 32 ? 16 : 8;
+  return length > 1024 ? kMostBins : length > 512 ? kMostBins / 2 : length > 32 ? 16 : 8;
 }
 
 /// Of longer ranges so many items choose the plane, evenly spread along the list…

@@ -94,35 +94,36 @@ HWY_INLINE void put_corners(const std::uint32_t* corner, std::uint32_t i, Treele
   t.corner[i][3] = kNone;
 }
 
-void load_triangles(const Items& items, bool with_boxes, Treelet& t) {
-  const VertexReader vertex(items);
+/// The boxes of all triangles, and corners too if wanted.
+template <bool kWithCorners>
+void load_boxes(const Items& items, Treelet& t) {
   if (!items.are_triangles()) {
     for (std::uint32_t i = 0; i < t.count; ++i) {
       store_box(instance_box(items.boxes[t.primitive[i]]), t.triangle_box[i].v);
     }
-  } else if (with_boxes) {
-    for_each_triangle(items, t, [&](std::uint32_t i, const std::uint32_t* corner) {
-      put_corners(corner, i, t);
-      store_box(triangle_box(vertex(corner[0]), vertex(corner[1]), vertex(corner[2])),
-                t.triangle_box[i].v);
-    });
-  } else {
-    for_each_triangle(items, t, [&](std::uint32_t i, const std::uint32_t* corner) {
-      put_corners(corner, i, t);
-    });
+    return;
   }
+  const VertexReader vertex(items);
+  for_each_triangle(items, t, [&](std::uint32_t i, const std::uint32_t* corner) {
+    if (kWithCorners) put_corners(corner, i, t);
+    store_box(triangle_box(vertex(corner[0]), vertex(corner[1]), vertex(corner[2])),
+              t.triangle_box[i].v);
+  });
 }
 
 void load(const Items& items, const KeyIndex<std::uint32_t>* strips, std::uint32_t count,
           Treelet& t) {
   list_triangles<false>(strips, count, t);
-  load_triangles(items, true, t);
+  load_boxes<true>(items, t);
 }
 
-void load_codes(const Items& items, const KeyIndex<std::uint32_t>* strips, std::uint32_t count,
-                bool with_boxes, Treelet& t) {
+void load_corners(const Items& items, const KeyIndex<std::uint32_t>* strips, std::uint32_t count,
+                  Treelet& t) {
   list_triangles<true>(strips, count, t);
-  load_triangles(items, with_boxes, t);
+  if (!items.are_triangles()) return;
+  for_each_triangle(items, t, [&](std::uint32_t i, const std::uint32_t* corner) {
+    put_corners(corner, i, t);
+  });
 }
 
 /// Two neighbours become one item if the area of the common box is at most that of the larger one
@@ -147,28 +148,30 @@ constexpr std::uint32_t kClusterItems = 4;
 
 /// Bit i of `joined`: strip i is one item with that before it.
 void join_strips(const Treelet& t, float scale, std::uint8_t* joined) {
-  float last_area = 0.0f;
+  Lanes last = load_box(t.box[0].v);
+  float last_area = area_of(last, scale);
   joined[0] = 0;
-  for (std::uint32_t i = 0; i < t.count; ++i) {
+  for (std::uint32_t i = 1; i < t.count; ++i) {
     const Lanes box = load_box(t.box[i].v);
-    const float area = area_of(box, scale);
-    if (i > 0) {
-      const float both = area_of(merge(box, load_box(t.box[i - 1].v)), scale);
-      const float most = max_of(area, last_area) + kOfSmaller * min_of(area, last_area);
-      // Two of two triangles have eight vertices at most.
-      const bool fits = both <= most && both <= kLargestStrip &&
-                        (t.triangles[i] <= 2) & (t.triangles[i - 1] <= 2);
-      joined[i] = fits && joined[i - 1] == 0 ? 1 : 0;
-    }
+    const float area = area_of(box, scale), both = area_of(merge(box, last), scale);
+    const float most = max_of(area, last_area) + kOfSmaller * min_of(area, last_area);
+    // Two of two triangles have eight vertices at most. (No &&: nobody could predict it.)
+    const bool may = (both <= most) & (both <= kLargestStrip) & (t.triangles[i] <= 2) &
+                     (t.triangles[i - 1] <= 2);
+    joined[i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(may) & ~joined[i - 1]);
+    last = box;
     last_area = area;
   }
 }
 
-std::uint32_t cluster(float largest_area, float scale, std::uint32_t first, Treelet& t,
-                      BinaryNode* clusters) {
+std::uint32_t cluster(const Items& items, const KeyIndex<std::uint32_t>* strips,
+                      std::uint32_t count, const ClusterLimits& limits, std::uint32_t first,
+                      Treelet& t, BinaryNode* clusters) {
+  list_triangles<true>(strips, count, t);
+  load_boxes<false>(items, t);
   for (std::uint32_t i = 0; i < t.count; ++i) store_box(strip_box(t, i), t.box[i].v);
   std::uint8_t joined[kRunSize + kClusterItems];
-  join_strips(t, scale, joined);
+  join_strips(t, limits.scale, joined);
   std::uint32_t made = 0;
   for (std::uint32_t begin = 0; begin < t.count;) {
     const std::uint32_t rest = t.count - begin;
@@ -194,7 +197,7 @@ std::uint32_t cluster(float largest_area, float scale, std::uint32_t first, Tree
       write_node(clusters[made++], its, first + from,
                  ClusterInfo(to - from, with_last & its_own, triangles).packed());
     };
-    if (area_of(box, 1.0f) <= largest_area) {
+    if (area_of(box, 1.0f) <= limits.largest_area) {
       put(begin, end, box);
     } else {
       for (std::uint32_t i = begin; i < end; ++i) put(i, i + 1, load_box(t.box[i].v));

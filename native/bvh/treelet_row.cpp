@@ -4,8 +4,13 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "parallel/first_touch.h"
+
 namespace komorebi {
 namespace {
+
+/// Trees take more than that for each item.
+constexpr std::size_t kLeastNodeBytes = 6, kLeastLeafBytes = 16;
 
 std::size_t count_roots(std::span<const WideTreelet> treelets) {
   std::size_t count = 0;
@@ -15,7 +20,7 @@ std::size_t count_roots(std::span<const WideTreelet> treelets) {
 
 }  // namespace
 
-TreeletRow::TreeletRow(const Items& items, std::span<WideTreelet> treelets)
+TreeletRow::TreeletRow(const Items& items, std::span<WideTreelet> treelets, ThreadPool& pool)
     : items_(items), treelets_(treelets), roots_(count_roots(treelets)) {
   // Each node but the root has two children at least.
   nodes_ = LateArray<WideNode>(items.count() + 1);
@@ -24,6 +29,13 @@ TreeletRow::TreeletRow(const Items& items, std::span<WideTreelet> treelets)
   } else {
     box_leaves_ = LateArray<std::uint32_t>(items.count());
   }
+  // What any tree takes is backed by all workers at once, the rest when it is needed.
+  const auto back = [&](void* room, std::size_t bytes) {
+    touch_pages(room, bytes, pool);
+    return bytes < 2 * kHugePage ? 0 : (bytes + kHugePage - 1) / kHugePage;
+  };
+  nodes_backed_ = back(nodes_.room(), kLeastNodeBytes * items.count());
+  leaves_backed_ = back(leaf_room(), (items.are_triangles() ? kLeastLeafBytes : 4) * items.count());
 }
 
 TreeletRow::Shelf TreeletRow::take_shelf(std::uint32_t treelet, std::size_t items) {

@@ -7,6 +7,7 @@
 
 #include "bvh/treelet.h"
 #include "bvh/wide_tree.h"
+#include "parallel/thread_pool.h"
 
 namespace komorebi {
 
@@ -23,7 +24,7 @@ class TreeletRow {
     Scratch<std::byte> leaves;
   };
 
-  TreeletRow(const Items& items, std::span<WideTreelet> treelets);
+  TreeletRow(const Items& items, std::span<WideTreelet> treelets, ThreadPool& pool);
 
   /// Room for a treelet of so many items, to be written from treelet.root_nodes and
   /// treelet.root_leaves on.
