@@ -72,8 +72,8 @@ HWY_INLINE PlannedChildren planned_children(const BinaryNode* nodes, std::uint32
       continue;
     }
     all[planned.count] = next;
-    key[planned.count] = area_key(area_of(node_box(child), 1.0f), child.is_leaf() ? 0 : kInnerBit,
-                                  planned.count);
+    key[planned.count] =
+        area_key(area_of(node_box(child), 1.0f), child.is_leaf() ? 0 : kInnerBit, planned.count);
     planned.inner += child.is_leaf() ? 0 : 1;
     ++planned.count;
   }

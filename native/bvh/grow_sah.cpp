@@ -65,8 +65,8 @@ class SahBuilder {
         const Run run{first, std::min(kRunSize, order_.count - first)};
         KeyIndex<std::uint32_t> room[kRunSize];
         BinaryNode found[kRunSize];
-        count[i] = kernel_.cluster(items_, order_.narrow_run(run, room), run.count, limits, first, t,
-                                   found);
+        count[i] = kernel_.cluster(items_, order_.narrow_run(run, room), run.count, limits, first,
+                                   t, found);
         base[i] = next.fetch_add(count[i]);
         std::copy_n(found, count[i], &moved_[base[i]]);
       }

@@ -24,8 +24,8 @@ struct MortonOrder {
   Scratch<KeyIndex<std::uint64_t>> wide;
   std::uint32_t count = 0;     ///< of strips
   std::uint32_t left_out = 0;  ///< items in none
-  float sample_area = 0.0f;   ///< median half area of the boxes looked at
-  float largest_side = 0.0f;  ///< of everything
+  float sample_area = 0.0f;    ///< median half area of the boxes looked at
+  float largest_side = 0.0f;   ///< of everything
 
   std::uint64_t code(std::size_t i) const { return wide.size() > 0 ? wide[i].key : narrow[i].key; }
 

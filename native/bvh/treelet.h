@@ -109,7 +109,7 @@ struct Clusters {
 struct ClusterRange {
   std::uint32_t begin, end;
   std::uint32_t triangles;  ///< in all its clusters
-  WideBox centres;      ///< bounds of the centres; in v[3] minus the longest side of a box
+  WideBox centres;          ///< bounds of the centres; in v[3] minus the longest side of a box
 };
 
 struct ClusterLimits {

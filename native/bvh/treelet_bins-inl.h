@@ -20,7 +20,9 @@ struct ItemList {
     t.ids[left] = id;
     t.moved[right] = id;
   }
-  HWY_INLINE void bring_back(std::uint32_t from, std::uint32_t to) const { t.ids[to] = t.moved[from]; }
+  HWY_INLINE void bring_back(std::uint32_t from, std::uint32_t to) const {
+    t.ids[to] = t.moved[from];
+  }
 };
 
 /// Clusters, which move themselves: there are too many for a cache, and so each is read where the
@@ -39,7 +41,9 @@ struct ClusterList {
     store_box(all, cluster[left].lo);
     store_box(all, moved[right].lo);
   }
-  HWY_INLINE void bring_back(std::uint32_t from, std::uint32_t to) const { cluster[to] = moved[from]; }
+  HWY_INLINE void bring_back(std::uint32_t from, std::uint32_t to) const {
+    cluster[to] = moved[from];
+  }
 };
 
 struct Range {

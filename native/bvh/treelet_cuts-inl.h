@@ -1,4 +1,5 @@
-// The best way to cut a sequence of boxes into wide nodes. Included once per instruction set (no include guard).
+// The best way to cut a sequence of boxes into wide nodes. Included once per instruction set (no
+// include guard).
 
 HWY_BEFORE_NAMESPACE();
 namespace komorebi {
@@ -96,9 +97,7 @@ class RunCuts {
     }
   }
 
-  static constexpr std::uint32_t kLanes = HWY_MAX_BYTES >= 64   ? 16
-                                          : HWY_MAX_BYTES >= 32 ? 8
-                                                                : 4;
+  static constexpr std::uint32_t kLanes = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
   float side_[6][kRoom];
   float area_[kWidth][kRoom];  ///< of the run of k + 1 boxes that ends at each
   float cost_[kRoom];

@@ -67,14 +67,13 @@ HWY_INLINE void split_few(Treelet& t, float scale, const Range& range, Range* le
       const float* const v = t.box[ids[i]].v;
       const Few box[6] = {hn::Set(d, v[0]), hn::Set(d, v[1]), hn::Set(d, v[2]),
                           hn::Set(d, v[4]), hn::Set(d, v[5]), hn::Set(d, v[6])};
-      const auto y_or_z = hn::IfThenElse(is_y, hn::Set(d, plane[count + i]),
-                                         hn::Set(d, plane[2 * count + i]));
+      const auto y_or_z =
+          hn::IfThenElse(is_y, hn::Set(d, plane[count + i]), hn::Set(d, plane[2 * count + i]));
       const auto centre = hn::IfThenElse(is_x, hn::Set(d, plane[i]), y_or_z);
       const auto is_before = hn::Le(centre, at);
       add_where(is_before, box, before);
       add_where(hn::Not(is_before), box, behind);
-      triangles =
-          hn::IfThenElse(is_before, hn::Add(triangles, hn::Set(d, weight[i])), triangles);
+      triangles = hn::IfThenElse(is_before, hn::Add(triangles, hn::Set(d, weight[i])), triangles);
     }
     const auto others = hn::Sub(all, triangles);
     const auto sum = hn::Add(cost_of(before, triangles, scale), cost_of(behind, others, scale));

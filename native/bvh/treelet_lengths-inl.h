@@ -10,8 +10,8 @@ namespace {
 constexpr std::uint32_t kLeafSlack = 3;
 
 /// For each triangle, what a leaf that begins with it can be; what is said of the last ones goes
-/// beyond the treelet's end. All at once in lanes: which corners of a triangle stand in one of those
-/// before.
+/// beyond the treelet's end. All at once in lanes: which corners of a triangle stand in one of
+/// those before.
 class LeafLengths {
  public:
   LeafLengths(const Treelet& t, LeafLimit limit) {
@@ -48,9 +48,7 @@ class LeafLengths {
   static constexpr std::uint32_t kPart = 256;
   static constexpr std::uint32_t kBefore = kClusterTriangles;  ///< more than a leaf looks back
   static constexpr std::uint32_t kRoom = kPart + 2 * kBefore + kBehindDesk;
-  static constexpr std::uint32_t kLanes = HWY_MAX_BYTES >= 64   ? 16
-                                          : HWY_MAX_BYTES >= 32 ? 8
-                                                                : 4;
+  static constexpr std::uint32_t kLanes = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
 
   /// Where codes part most, of each place and those kLeafSlack before it; the later one of equals.
   void find_cuts(const Treelet& t) {
@@ -93,8 +91,8 @@ class LeafLengths {
   void find_new_corners(std::uint32_t count) {
     const Tag d;
     for (std::uint32_t i = kBefore; i < kBefore + count; i += kLanes) {
-      Indices corner[3], fresh[3] = {hn::Set(d, 1u << 18), hn::Set(d, 2u << 18),
-                                     hn::Set(d, 4u << 18)};
+      Indices corner[3],
+          fresh[3] = {hn::Set(d, 1u << 18), hn::Set(d, 2u << 18), hn::Set(d, 4u << 18)};
       for (int k = 0; k < 3; ++k) corner[k] = hn::LoadU(d, corner_[k] + i);
       auto packed = hn::Zero(d);
       for (std::uint32_t n = 1; n < kClusterTriangles; ++n) {

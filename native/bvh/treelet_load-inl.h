@@ -121,9 +121,8 @@ void load_corners(const Items& items, const KeyIndex<std::uint32_t>* strips, std
                   Treelet& t) {
   list_triangles<true>(strips, count, t);
   if (!items.are_triangles()) return;
-  for_each_triangle(items, t, [&](std::uint32_t i, const std::uint32_t* corner) {
-    put_corners(corner, i, t);
-  });
+  for_each_triangle(
+      items, t, [&](std::uint32_t i, const std::uint32_t* corner) { put_corners(corner, i, t); });
 }
 
 /// Two neighbours become one item if the area of the common box is at most that of the larger one
@@ -192,7 +191,8 @@ std::uint32_t cluster(const Items& items, const KeyIndex<std::uint32_t>* strips,
     const std::uint32_t end = begin + length;
     const auto put = [&](std::uint32_t from, std::uint32_t to, Lanes its) {
       const std::uint32_t triangles = t.start[to - 1] + t.triangles[to - 1] - t.start[from];
-      const std::uint32_t with_last = joined[from + 1] * 2u + joined[from + 2] * 4u + joined[from + 3] * 8u;
+      const std::uint32_t with_last =
+          joined[from + 1] * 2u + joined[from + 2] * 4u + joined[from + 3] * 8u;
       const std::uint32_t its_own = (1u << (to - from)) - 1;
       write_node(clusters[made++], its, first + from,
                  ClusterInfo(to - from, with_last & its_own, triangles).packed());

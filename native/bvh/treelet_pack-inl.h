@@ -1,5 +1,5 @@
-// A linear treelet: leaves and wide nodes are runs of the Morton order, one level over the other (as
-// in Kamel, Faloutsos 1993, "On Packing R-trees"), without a binary tree. Included once per
+// A linear treelet: leaves and wide nodes are runs of the Morton order, one level over the other
+// (as in Kamel, Faloutsos 1993, "On Packing R-trees"), without a binary tree. Included once per
 // instruction set (no include guard).
 
 HWY_BEFORE_NAMESPACE();
@@ -59,8 +59,8 @@ class PackedTreelet {
     return leaves;
   }
 
-  HWY_INLINE WrittenLeaf write_leaf(std::uint32_t begin, std::uint32_t count,
-                                    std::uint32_t firsts, std::byte* record) {
+  HWY_INLINE WrittenLeaf write_leaf(std::uint32_t begin, std::uint32_t count, std::uint32_t firsts,
+                                    std::byte* record) {
     const std::uint32_t* const primitives = &t_.primitive[begin];
     if (items_.are_triangles()) {
       return write_cluster(vertex_, count, &t_.corner[begin], firsts, primitives, record);

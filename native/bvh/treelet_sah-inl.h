@@ -51,8 +51,7 @@ class SahTreelet {
  private:
   void add(std::uint32_t index, std::uint32_t depth, const Range& range) {
     const std::uint32_t count = range.end - range.begin;
-    if (const std::uint32_t info =
-            leaf_info(t_, range.begin, range.end, range.triangles, limit_);
+    if (const std::uint32_t info = leaf_info(t_, range.begin, range.end, range.triangles, limit_);
         info != 0) {
       write_node(t_.nodes[index], box_of_run(t_, range.begin, range.end), range.begin, info);
       return;

@@ -89,9 +89,7 @@ class StripBlock {
   }
 
  private:
-  static constexpr std::uint32_t kLanes = HWY_MAX_BYTES >= 64   ? 16
-                                          : HWY_MAX_BYTES >= 32 ? 8
-                                                                : 4;
+  static constexpr std::uint32_t kLanes = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
 
   /// Vertices of all corners, an axis a row.
   HWY_INLINE void load(const std::uint32_t* corners, const VertexReader& vertex) {
@@ -168,8 +166,8 @@ class StripBlock {
       for (int k = 0; k < 6; ++k) box[k] = hn::Min(box[k], next[k]);
       const auto both = area(box, minus_scale);
       const auto one = hn::Load(d, area_ + i), other = hn::LoadU(d, area_ + i + 1);
-      const auto most = hn::Add(hn::Max(one, other),
-                                hn::Mul(hn::Min(one, other), hn::Set(d, kOfSmaller)));
+      const auto most =
+          hn::Add(hn::Max(one, other), hn::Mul(hn::Min(one, other), hn::Set(d, kOfSmaller)));
       const auto fits = hn::And(hn::Le(both, most), hn::Le(both, hn::Set(d, kLargestStrip)));
       small |= bits_of(fits) << i;
     }
@@ -229,7 +227,8 @@ class StripBlock {
       }
       const auto own = hn::Load(du, strip + i), next = hn::LoadU(du, strip + i + 1);
       const auto one = hn::Set(du, 1u << kStripShift);
-      const auto others = hn::Add(hn::ShiftLeft<kStripShift>(hn::ShiftRight<kStripShift>(next)), one);
+      const auto others =
+          hn::Add(hn::ShiftLeft<kStripShift>(hn::ShiftRight<kStripShift>(next)), one);
       const auto both = hn::IfThenElse(hn::RebindMask(du, is_joined), hn::Add(own, others), own);
       hn::CompressStore(both, hn::RebindMask(du, stays), du, strip + to);
       const std::uint64_t lanes = (std::uint64_t{1} << kLanes) - 1;
@@ -298,7 +297,8 @@ StripCount code(const Items& items, const MortonGrid& grid, std::uint32_t begin,
   StripBlock block;
   for (std::uint32_t first = begin; first < end; first += kBlock) {
     const std::uint32_t triangles = end - first < kBlock ? end - first : kBlock;
-    found.left_out += block.read(items, vertex, first, triangles, grid.outer_grid.cells_per_unit / grid.outer_grid.cells);
+    found.left_out += block.read(items, vertex, first, triangles,
+                                 grid.outer_grid.cells_per_unit / grid.outer_grid.cells);
     KeyIndex<Key>* const to = out + found.strips;
     found.strips += block.count;
     if constexpr (sizeof(Key) == sizeof(std::uint32_t)) {
