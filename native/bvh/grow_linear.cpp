@@ -1,5 +1,5 @@
-// A linear BVH (Lauterbach et al. 2009): Morton codes, one sort, and a hierarchy that follows from
-// the codes alone, treelet by treelet in a worker's caches.
+// A linear BVH (Lauterbach et al. 2009): Morton codes, one sort, and a hierarchy over runs of that
+// order, treelet by treelet in a worker's caches.
 #include "bvh/grove.h"
 #include "bvh/morton_order.h"
 

@@ -2,9 +2,10 @@
 //
 // Along the Morton curve, small clusters of neighbours are cheap to find. Planes that part the
 // upper levels hardly ever cut through what a cluster holds, so these levels are split by binned
-// SAH over clusters, a third as many as items (Ganestam et al. 2015, "Bonsai", has treelets in
+// SAH over clusters, a third as many as triangles (Ganestam et al. 2015, "Bonsai", has treelets in
 // their place, and loses where Morton cells cut). Below, what has become small enough for a
-// worker's nearest cache is split item by item.
+// worker's nearest caches is split item by item: a strip (bvh/strip.h), or two neighbours on the
+// curve that fill hardly more room than one.
 #include <condition_variable>
 #include <mutex>
 
