@@ -16,34 +16,6 @@ namespace {
 constexpr std::size_t kGrain = 16384;
 constexpr std::size_t kSamples = 1024;
 
-/// Bounds of all vertices, or of all boxes.
-Aabb extent(const Items& items, ThreadPool& pool, const Cancel& cancel) {
-  Aabb all;
-  std::mutex mutex;
-  const std::size_t count = items.are_triangles() ? items.vtx2xyz.size() / 3 : items.boxes.size();
-  pool.for_each_chunk(count, 4 * kGrain, [&](std::size_t begin, std::size_t end) {
-    if (cancel.raised()) return;
-    Aabb part;
-    if (items.are_triangles()) {
-      const float* xyz = items.vtx2xyz.data();
-      for (std::size_t i = begin; i < end; ++i) {
-        for (int axis = 0; axis < 3; ++axis) {
-          const float x = xyz[3 * i + static_cast<std::size_t>(axis)];
-          part.lo[axis] = min_of(part.lo[axis], x);
-          part.hi[axis] = max_of(part.hi[axis], x);
-        }
-      }
-    } else {
-      for (std::size_t i = begin; i < end; ++i) {
-        if (!items.boxes[i].is_empty()) part = united(part, items.boxes[i]);
-      }
-    }
-    const std::lock_guard lock(mutex);
-    all = united(all, part);  // min and max: the order does not show
-  });
-  return all;
-}
-
 template <class T>
 Scratch<T> touched(std::size_t count, ThreadPool& pool) {
   Scratch<T> scratch(count);
@@ -77,6 +49,53 @@ std::vector<Aabb> sample_of(const Items& items) {
     if (!items.is_left_out(i)) sample.push_back(items.box(i));
   }
   return sample;
+}
+
+/// Bounds of some vertices, or of some boxes.
+Aabb extent(const Items& items, std::size_t begin, std::size_t end) {
+  Aabb part;
+  if (items.are_triangles()) {
+    const float* xyz = items.vtx2xyz.data();
+    for (std::size_t i = begin; i < end; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const float x = xyz[3 * i + static_cast<std::size_t>(axis)];
+        part.lo[axis] = min_of(part.lo[axis], x);
+        part.hi[axis] = max_of(part.hi[axis], x);
+      }
+    }
+  } else {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!items.boxes[i].is_empty()) part = united(part, items.boxes[i]);
+    }
+  }
+  return part;
+}
+
+/// What is known of all items before their codes.
+struct Overview {
+  Aabb all;
+  std::vector<Aabb> sample;
+};
+
+Overview look_over(const Items& items, ThreadPool& pool, const Cancel& cancel) {
+  Overview overview;
+  std::mutex mutex;
+  const std::size_t count = items.are_triangles() ? items.vtx2xyz.size() / 3 : items.boxes.size();
+  // One of the chunks is the sample, which waits for memory most of the time.
+  const std::size_t chunks = (count + 4 * kGrain - 1) / (4 * kGrain) + 1;
+  pool.for_each_chunk(chunks, 1, [&](std::size_t chunk, std::size_t) {
+    if (cancel.raised()) return;
+    if (chunk == 0) {
+      overview.sample = sample_of(items);
+      return;
+    }
+    const std::size_t begin = (chunk - 1) * 4 * kGrain;
+    const Aabb part = extent(items, begin, std::min(count, begin + 4 * kGrain));
+    const std::lock_guard lock(mutex);
+    overview.all = united(overview.all, part);  // min and max: the order does not show
+  });
+  check(cancel);
+  return overview;
 }
 
 float median_area(const std::vector<Aabb>& sample) {
@@ -138,9 +157,7 @@ Scratch<KeyIndex<Key>> sorted_strips(const Items& items,
 MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& cancel) {
   MortonOrder order;
   if (items.count() > kMostStrips) throw std::invalid_argument("a tree has too many items");
-  const Aabb all = extent(items, pool, cancel);
-  check(cancel);
-  const std::vector<Aabb> sample = sample_of(items);
+  const auto [all, sample] = look_over(items, pool, cancel);
   const MortonGrid grid = choose_morton_grid(all, sample);
   order.sample_area = median_area(sample);
   order.largest_side = all.is_empty() ? 0.0f

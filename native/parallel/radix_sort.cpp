@@ -114,24 +114,27 @@ void sort_bucket(KeyIndex<Key>* from, KeyIndex<Key>* to, std::size_t count, unsi
   const unsigned passes = (high + kDigitBits - 1) / kDigitBits | 1u;
   const unsigned digit_bits = (high + passes - 1) / passes;
   const std::size_t digits = std::size_t{1} << digit_bits;
+  // The last digit may reach above what is to be sorted by, where the bucket's keys agree.
+  const auto digit = [&](Key key, unsigned pass) {
+    return static_cast<std::size_t>(key >> (low + pass * digit_bits)) & (digits - 1);
+  };
+  std::uint32_t next[kMostPasses][std::size_t{1} << kDigitBits];
+  for (unsigned pass = 0; pass < passes; ++pass) std::fill_n(next[pass], digits, 0u);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (unsigned pass = 0; pass < passes; ++pass) ++next[pass][digit(from[i].key, pass)];
+  }
   KeyIndex<Key>* source = from;
   KeyIndex<Key>* target = to;
-  std::uint32_t next[std::size_t{1} << kDigitBits];
   for (unsigned pass = 0; pass < passes; ++pass) {
-    const unsigned shift = low + pass * digit_bits;
-    // The last digit may reach above what is to be sorted by, where the bucket's keys agree.
-    const auto digit = [&](Key key) {
-      return static_cast<std::size_t>(key >> shift) & (digits - 1);
-    };
-    std::fill_n(next, digits, 0u);
-    for (std::size_t i = 0; i < count; ++i) ++next[digit(source[i].key)];
     std::uint32_t place = 0;
     for (std::size_t d = 0; d < digits; ++d) {
-      const std::uint32_t size = next[d];
-      next[d] = place;
+      const std::uint32_t size = next[pass][d];
+      next[pass][d] = place;
       place += size;
     }
-    for (std::size_t i = 0; i < count; ++i) target[next[digit(source[i].key)]++] = source[i];
+    for (std::size_t i = 0; i < count; ++i) {
+      target[next[pass][digit(source[i].key, pass)]++] = source[i];
+    }
     std::swap(source, target);
   }
   if (low == 0) return;
