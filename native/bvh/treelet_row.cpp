@@ -31,8 +31,9 @@ TreeletRow::TreeletRow(const Items& items, std::span<WideTreelet> treelets, Thre
   }
   // What any tree takes is backed by all workers at once, the rest when it is needed.
   const auto back = [&](void* room, std::size_t bytes) {
-    touch_pages(room, bytes, pool);
-    return bytes < 2 * kHugePage ? 0 : (bytes + kHugePage - 1) / kHugePage;
+    const std::size_t pages = bytes / kHugePage;
+    touch_pages(room, pages * kHugePage, pool);
+    return pages;
   };
   nodes_backed_ = back(nodes_.room(), kLeastNodeBytes * items.count());
   leaves_backed_ = back(leaf_room(), (items.are_triangles() ? kLeastLeafBytes : 4) * items.count());
