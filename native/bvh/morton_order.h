@@ -28,7 +28,6 @@ struct MortonOrder {
   float largest_side = 0.0f;   ///< of everything
 
   std::uint64_t code(std::size_t i) const { return wide.size() > 0 ? wide[i].key : narrow[i].key; }
-
   std::uint32_t strip(std::size_t i) const {
     return wide.size() > 0 ? wide[i].index : narrow[i].index;
   }

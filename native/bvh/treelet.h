@@ -49,9 +49,9 @@ struct Treelet {
   std::uint32_t start[kTreeletSize];      ///< its first triangle
   std::uint32_t triangles[kTreeletSize];  ///< how many it has
   WideBox box[kTreeletSize];
-  alignas(16) float centre[kTreeletSize][4];  ///< minus the longest side, its two last
-                                              ///< bits: triangles − 1; by sah_treelet()
-  std::uint64_t vertex_bits[kTreeletSize];    ///< of its vertices' hashes
+  /// And minus the longest side, whose two last bits are triangles − 1. By sah_treelet().
+  alignas(16) float centre[kTreeletSize][4];
+  std::uint64_t vertex_bits[kTreeletSize];  ///< of its vertices' hashes
   /// Position → item. Not a multiple of 4 KiB from `moved`: stores to one of them would hold up
   /// loads from the other.
   std::uint32_t ids[kTreeletSize + kBehindDesk];
@@ -87,7 +87,7 @@ inline bool is_treelet(const BinaryNode& node) {
   return node.info == kTreeletInfo;
 }
 
-/// BinaryNode::info of a cluster: up to seven strips (bvh/strip.h), of which some are one item with
+/// BinaryNode::info of a cluster: up to four strips (bvh/strip.h), of which some are one item with
 /// the strip before them.
 struct ClusterInfo {
   std::uint32_t strips, joined, triangles;  ///< joined: bit k for strip k

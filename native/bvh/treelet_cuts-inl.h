@@ -61,7 +61,7 @@ class RunCuts {
   /// Areas of all runs.
   void measure(std::uint32_t count, float scale) {
     const Tag d;
-    const auto in_units = hn::Set(d, -scale);
+    const auto in_units = hn::Set(d, -scale), large = hn::Set(d, 1e12f);
     for (std::uint32_t i = kBefore; i < kBefore + count; i += kLanes) {
       Numbers box[6];
       for (int k = 0; k < 6; ++k) box[k] = hn::LoadU(d, side_[k] + i);
@@ -74,7 +74,9 @@ class RunCuts {
           side[axis] = hn::Mul(hn::Add(box[axis], box[3 + axis]), in_units);
         }
         const auto xy_xz = hn::Mul(side[0], hn::Add(side[1], side[2]));
-        hn::StoreU(hn::Add(xy_xz, hn::Mul(side[1], side[2])), d, area_[length - 1] + i);
+        // What is no number is large too: sums must stay below that of what cannot be.
+        const auto area = hn::Add(xy_xz, hn::Mul(side[1], side[2]));
+        hn::StoreU(hn::IfThenElse(hn::Lt(area, large), area, large), d, area_[length - 1] + i);
       }
     }
   }

@@ -68,7 +68,7 @@ void list_triangles(const KeyIndex<std::uint32_t>* strips, std::uint32_t count, 
   std::fill_n(t.primitive + at, kFetchedAhead, t.primitive[at - 1]);
 }
 
-/// The box of an instance, or of a cluster of the top.
+/// The box of an instance.
 HWY_INLINE Lanes instance_box(const Aabb& box) {
   alignas(16) float lo[4] = {box.lo.x, box.lo.y, box.lo.z, 0.0f};
   alignas(16) float minus_hi[4] = {-box.hi.x, -box.hi.y, -box.hi.z, 0.0f};

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -63,6 +64,17 @@ TEST(Builders, AreValidForAnyNumberOfTriangles) {
       const TriangleMesh mesh = random_triangles(count, 0.1f);
       const MeshTree tree = build(mesh, builder);
       EXPECT_EQ(validate(tree, mesh.vtx2xyz, mesh.tri2vtx), "") << count << " triangles";
+    }
+  }
+}
+
+TEST(Builders, AreValidWhereAreasOverflow) {
+  for (const float size : {1e18f, 1e30f, 1e38f, 3e38f}) {
+    TriangleMesh mesh = random_triangles(5000, 0.1f);
+    for (float& x : mesh.vtx2xyz) x = std::clamp(x, -1.0f, 1.0f) * size;
+    for (const Builder builder : kFast) {
+      const MeshTree tree = build(mesh, builder);
+      EXPECT_EQ(validate(tree, mesh.vtx2xyz, mesh.tri2vtx), "") << size;
     }
   }
 }
