@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 
 #include "parallel/float_environment.h"
 
@@ -14,6 +15,16 @@ thread_local bool inside_body = false;
 unsigned choose_size(unsigned threads) {
   if (threads > 0) return threads;
   return std::max(1u, std::thread::hardware_concurrency());
+}
+
+/// A thread that sleeps is woken late, and often where the one that wakes it runs: the next phase
+/// of a build comes sooner than that.
+constexpr std::chrono::microseconds kStayAwake{200};
+
+template <class Condition>
+void stay_awake_until(const Condition& is_met) {
+  const auto end = std::chrono::steady_clock::now() + kStayAwake;
+  while (!is_met() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
 }
 
 }  // namespace
@@ -62,6 +73,9 @@ void ThreadPool::work(unsigned worker) {
     call(body, worker);
     lock.lock();
     if (--unfinished_ == 0) done_.notify_one();
+    lock.unlock();
+    stay_awake_until([&] { return stop_ || generation_ != seen; });
+    lock.lock();
   }
 }
 
@@ -85,6 +99,7 @@ void ThreadPool::run(unsigned workers, FunctionRef<void(unsigned)> body) {
   inside_body = true;
   call(body, 0);
   inside_body = false;
+  stay_awake_until([&] { return unfinished_ == 0; });
   std::unique_lock lock(mutex_);
   done_.wait(lock, [&] { return unfinished_ == 0; });
   workers_ = 0;  // late wakers have nothing to do

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <exception>
@@ -43,13 +44,13 @@ class ThreadPool {
   std::vector<std::thread> threads_;
   std::mutex in_use_;  ///< held by the thread whose run() the pool is working on
 
-  std::mutex mutex_;  ///< guards everything below
+  std::mutex mutex_;  ///< guards all changes of what is below
   std::condition_variable start_, done_;
   const FunctionRef<void(unsigned)>* body_ = nullptr;
-  unsigned workers_ = 0;     ///< workers that take part in the current run
-  unsigned unfinished_ = 0;  ///< of them, spawned ones that have not returned yet
-  unsigned generation_ = 0;  ///< counts runs, so that a thread takes part once in each
-  bool stop_ = false;
+  unsigned workers_ = 0;                  ///< workers that take part in the current run
+  std::atomic<unsigned> unfinished_ = 0;  ///< of them, spawned ones that have not returned yet
+  std::atomic<unsigned> generation_ = 0;  ///< counts runs, so that a thread takes part once in each
+  std::atomic<bool> stop_ = false;
   std::exception_ptr error_;
 };
 
