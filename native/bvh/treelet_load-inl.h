@@ -169,8 +169,8 @@ std::uint32_t cluster(const Items& items, const KeyIndex<std::uint32_t>* strips,
   list_triangles<true>(strips, count, t);
   load_boxes<false>(items, t);
   for (std::uint32_t i = 0; i < t.count; ++i) store_box(strip_box(t, i), t.box[i].v);
-  std::uint8_t joined[kRunSize + kClusterItems];
-  join_strips(t, limits.scale, joined);
+  std::uint8_t joined[kRunSize + kClusterItems] = {};
+  if (items.are_triangles()) join_strips(t, limits.scale, joined);
   std::uint32_t made = 0;
   for (std::uint32_t begin = 0; begin < t.count;) {
     const std::uint32_t rest = t.count - begin;

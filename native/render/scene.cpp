@@ -177,7 +177,8 @@ void Scene::commit(ThreadPool& pool, const Cancel& cancel) {
   std::vector<Aabb> boxes;
   boxes.reserve(instances_.size());
   for (const InstanceView& instance : instances_) boxes.push_back(instance.world_bounds);
-  tree_ = build_instance_tree(boxes, Builder::kLinear, pool, cancel);
+  // Behind each leaf stands a whole tree: the better builder pays from the first rays on.
+  tree_ = build_instance_tree(boxes, Builder::kSah, pool, cancel);
   if (has_camera_) camera_ = make_camera(camera_desc_, origin_);
 
   view_.meshes = mesh_views_.data();

@@ -73,7 +73,7 @@ std::vector<double> grow_instances(double wanted, unsigned threads) {
     const Vec3 place(2.4f * float(i % side), 0.4f * number.next(), 2.4f * float(i / side));
     scene.add_instance(0, Mat3d(c, 0, s, 0, 1, 0, -s, 0, c), place);
   }
-  const double build = seconds_of([&] { scene.commit(); });
+  const double build = seconds_of([&] { scene.commit(Builder::kSah); });
   const double peak = memory("VmHWM") - before;
   const auto bytes = static_cast<double>(scene.instance_tree().byte_count());
   const double instance_bytes = static_cast<double>(sizeof(InstanceView)) * side * side;
@@ -114,7 +114,7 @@ void scale_part(const Options& options) {
   for (const double wanted : options.numbers("instances", "1,1e2,1e4,1e6")) {
     std::fprintf(stderr, "scale: %g instances\n", wanted);
     touch_free_memory(kMostBytes * wanted);
-    print("instances", "LINEAR", in_fresh_process([&] { return grow_instances(wanted, threads); }),
+    print("instances", "SAH", in_fresh_process([&] { return grow_instances(wanted, threads); }),
           threads);
   }
 }
