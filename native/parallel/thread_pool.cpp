@@ -70,6 +70,7 @@ void ThreadPool::work(unsigned worker) {
     seen = generation_;
     const FunctionRef<void(unsigned)> body = *body_;
     lock.unlock();
+    places_.take(seen);
     call(body, worker);
     lock.lock();
     if (--unfinished_ == 0) done_.notify_one();
@@ -88,6 +89,7 @@ void ThreadPool::run(unsigned workers, FunctionRef<void(unsigned)> body) {
     for (unsigned worker = 0; worker < workers; ++worker) body(worker);
     return;
   }
+  places_.take(generation_ + 1);  // before all others: the host's thread is not to move
   {
     const std::lock_guard lock(mutex_);
     body_ = &body;

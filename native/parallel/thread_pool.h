@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "parallel/function_ref.h"
+#include "parallel/worker_places.h"
 
 namespace komorebi {
 
@@ -43,6 +44,7 @@ class ThreadPool {
   unsigned size_;
   std::vector<std::thread> threads_;
   std::mutex in_use_;  ///< held by the thread whose run() the pool is working on
+  WorkerPlaces places_;
 
   std::mutex mutex_;  ///< guards all changes of what is below
   std::condition_variable start_, done_;
