@@ -6,9 +6,6 @@ namespace komorebi {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Four numbers a triangle: its vertices, and kNone.
-using Corners4 = std::uint32_t[4];
-
 /// Vertex k as a triangle's corner: a lane each, as ClusterView::corners packs them.
 struct CornerPlaces {
   alignas(64) std::uint32_t of[kClusterVertices][16];
@@ -44,15 +41,21 @@ class LeafCorners {
     return bits;
   }
 
-  /// Vertices of up to eight first corners: [8] indices in the mesh, the last one over and over.
-  static HWY_INLINE void list_vertices(const std::uint32_t* corner, std::uint32_t firsts,
-                                       std::uint32_t* to) {
-    std::uint32_t lane = 0;
-    for (std::uint32_t k = 0; k < kClusterVertices; ++k, firsts &= firsts - 1) {
-      lane = firsts != 0 ? static_cast<std::uint32_t>(std::countr_zero(firsts)) : lane;
-      to[k] = corner[lane];
+  /// Vertices of up to eight first corners: indices in the mesh, the last one over and over.
+  /// @param to  [kListRoom], of which eight count
+  HWY_INLINE void list_vertices(std::uint32_t firsts, std::uint32_t* to) const {
+    const auto last = hn::Set(Tag(), corner_[31 - std::countl_zero(firsts)]);
+    std::uint32_t count = 0;
+    for (std::uint32_t v = 0; v < kVectors; ++v, firsts >>= kLanes) {
+      const std::uint32_t here = firsts & kAllLanes;
+      hn::StoreU(hn::Compress(lanes_[v], mask_from(here)), Tag(), to + count);
+      count += static_cast<std::uint32_t>(std::popcount(here));
+    }
+    for (std::uint32_t k = 0; k < kClusterVertices; k += kLanes) {
+      hn::StoreU(last, Tag(), to + count + k);
     }
   }
+  static constexpr std::uint32_t kListRoom = 2 * kClusterVertices + 16;
 
   /// Eight 16-bit entries as ClusterView::corners has them, null behind the last triangle.
   /// @param vertex  as list_vertices() lists them
@@ -92,6 +95,13 @@ class LeafCorners {
       bits |= mask_bits(hn::Eq(lanes_[v], wanted)) << (v * kLanes);
     }
     return bits;
+  }
+  static constexpr std::uint32_t kAllLanes = (1u << kLanes) - 1;
+  static HWY_INLINE hn::Mask<Tag> mask_from(std::uint32_t bits) {
+    std::uint8_t bytes[8];
+    const std::uint64_t all = bits;
+    std::memcpy(bytes, &all, 8);
+    return hn::LoadMaskBits(Tag(), bytes);
   }
   static HWY_INLINE std::uint32_t mask_bits(hn::Mask<Tag> mask) {
     std::uint8_t bytes[8];
@@ -156,12 +166,13 @@ HWY_INLINE WrittenLeaf write_cluster(const VertexReader& vertex, std::uint32_t c
                                      const std::uint32_t* primitives, std::byte* record) {
   firsts &= 0xffffffffu >> (32 - 4 * count);
   const auto vertices = static_cast<std::uint32_t>(std::popcount(firsts));
-  std::uint32_t index[kClusterVertices];
-  LeafCorners::list_vertices(corner[0], firsts, index);
+  std::uint32_t index[LeafCorners::kListRoom];
+  const LeafCorners corners(corner);
+  corners.list_vertices(firsts, index);
   const std::size_t start = ClusterView::coordinates_offset(count);
   record[0] = static_cast<std::byte>(count);
   record[1] = static_cast<std::byte>(vertices);
-  LeafCorners(corner).store(index, count, record + 2);
+  corners.store(index, count, record + 2);
   // Each row of coordinates is written as a whole; what is too much the next one overwrites.
   const Float4 d;
   Vector4 v[kClusterVertices];

@@ -6,98 +6,99 @@ namespace komorebi {
 namespace HWY_NAMESPACE {
 namespace {
 
-using GridTag = hn::CappedTag<float, kWidth>;
-using GridLanes = hn::Vec<GridTag>;
-constexpr int kGridLanes = HWY_MAX_BYTES >= 32 ? 8 : 4;
+using PlaneTag = hn::CappedTag<float, 2 * kWidth>;
 
-/// One axis of a node's grid: the traversal's own arithmetic (WideNode::plane) in lanes.
-struct LaneGrid {
-  GridLanes origin, step;
-  HWY_INLINE GridLanes at(GridLanes q) const { return hn::Add(origin, hn::Mul(q, step)); }
+/// A node's planes on one axis, the children's lower ones and then the upper ones, as
+/// WideNode::q has them.
+struct alignas(64) AxisPlanes {
+  float at[2 * kWidth];
 };
 
-/// The last plane that is not above x (`kLower`), or the first that is not below. The guess is off
-/// by what rounding does, as in bvh/quantise.cpp, whose planes these are.
-template <bool kLower>
-HWY_INLINE void store_planes(const LaneGrid& grid, float inverse_step, GridLanes x,
-                             hn::Mask<GridTag> is_used, std::uint8_t* to) {
-  const GridTag d;
-  const auto one = hn::Set(d, 1.0f), zero = hn::Zero(d), last = hn::Set(d, 255.0f);
-  const auto place = hn::Mul(hn::Sub(x, grid.origin), hn::Set(d, inverse_step));
-  const auto inside = hn::Min(hn::Max(place, zero), last);
-  auto q = kLower ? hn::Floor(inside) : hn::Ceil(inside);
-  while (true) {
-    const auto next = kLower ? hn::Add(q, one) : hn::Sub(q, one);
-    const auto fits = kLower ? hn::And(hn::Le(grid.at(next), x), hn::Lt(q, last))
-                             : hn::And(hn::Ge(grid.at(next), x), hn::Gt(q, zero));
-    if (HWY_LIKELY(hn::AllFalse(d, fits))) break;
-    q = hn::IfThenElse(fits, next, q);
+/// Upper planes are lower ones in a mirror.
+struct MirrorSigns {
+  alignas(64) std::uint32_t of[2 * kWidth];
+  constexpr MirrorSigns() : of() {
+    for (int i = 0; i < kWidth; ++i) of[kWidth + i] = 0x80000000u;
   }
-  while (true) {
-    const auto fails = kLower ? hn::And(hn::Gt(grid.at(q), x), hn::Gt(q, zero))
-                              : hn::And(hn::Lt(grid.at(q), x), hn::Lt(q, last));
-    if (HWY_LIKELY(hn::AllFalse(d, fails))) break;
-    q = hn::IfThenElse(fails, kLower ? hn::Sub(q, one) : hn::Add(q, one), q);
+};
+constexpr MirrorSigns kMirrorSigns;
+
+/// Where planes go on a grid, as bvh/quantise.cpp has it.
+HWY_INLINE void store_planes(const AxisPlanes& planes, float origin_of_all, float step_of_all,
+                             std::uint8_t* to) {
+  const PlaneTag d;
+  const auto origin = hn::Set(d, origin_of_all), step = hn::Set(d, step_of_all);
+  const auto inverse_step = hn::Set(d, 1.0f / step_of_all);
+  for (std::size_t i = 0; i < 2 * kWidth; i += hn::Lanes(d)) {
+    const auto x = hn::Load(d, planes.at + i);
+    const auto signs = hn::Load(hn::RebindToUnsigned<PlaneTag>(), kMirrorSigns.of + i);
+    const auto mirrored = [&](auto v) { return hn::Xor(v, hn::BitCast(d, signs)); };
+    const auto place = hn::Mul(hn::Sub(x, origin), inverse_step);
+    const auto inside = hn::Min(hn::Max(place, hn::Zero(d)), hn::Set(d, 255.0f));
+    auto q = mirrored(hn::Floor(mirrored(inside)));
+    while (true) {
+      const auto at = hn::Add(origin, hn::Mul(q, step));
+      const auto fails = hn::Gt(mirrored(at), mirrored(x));
+      if (HWY_LIKELY(hn::AllFalse(d, fails))) break;
+      q = hn::Sub(q, hn::IfThenElseZero(fails, mirrored(hn::Set(d, 1.0f))));
+    }
+    const hn::Rebind<std::int32_t, PlaneTag> di;
+    const auto whole = hn::BitCast(hn::RebindToUnsigned<decltype(di)>(), hn::ConvertTo(di, q));
+    hn::StoreU(hn::U8FromU32(whole), hn::Rebind<std::uint8_t, PlaneTag>(), to + i);
   }
-  q = hn::IfThenElse(is_used, q, kLower ? last : zero);
-  const hn::Rebind<std::int32_t, GridTag> di;
-  const auto whole = hn::BitCast(hn::RebindToUnsigned<decltype(di)>(), hn::ConvertTo(di, q));
-  hn::StoreU(hn::U8FromU32(whole), hn::Rebind<std::uint8_t, GridTag>(), to);
 }
 
-/// x, y and z of the low or negated high corners of some children, from `first` on.
-struct Corners {
-  GridLanes axis[3];
-};
-
-/// `corner(i)` are four lanes of child i.
-template <class Corner>
-HWY_INLINE Corners corners_of(int first, const Corner& corner) {
-  Vector4 near[3];
-  transpose(corner(first), corner(first + 1), corner(first + 2), corner(first + 3), near);
-  Corners all;
-#if HWY_MAX_BYTES >= 32
-  Vector4 far[3];
-  transpose(corner(first + 4), corner(first + 5), corner(first + 6), corner(first + 7), far);
-  for (int k = 0; k < 3; ++k) all.axis[k] = hn::Combine(GridTag(), far[k], near[k]);
-#else
-  for (int k = 0; k < 3; ++k) all.axis[k] = near[k];
-#endif
-  return all;
+/// choose_grid_exponent (bvh/quantise.h) for three axes.
+HWY_INLINE hn::Vec<hn::RebindToUnsigned<Float4>> grid_exponents(Vector4 lo, Vector4 hi) {
+  const Float4 d;
+  const hn::RebindToUnsigned<Float4> du;
+  const auto least = hn::Mul(hn::Sub(hi, lo), hn::Set(d, kGridShare));
+  auto exponent = hn::Min(hn::Max(hn::ShiftRight<23>(hn::BitCast(du, least)), hn::Set(du, 1u)),
+                          hn::Set(du, kFirstGridExponent));
+  const auto axes = hn::FirstN(du, 3);
+  while (true) {
+    const auto step = hn::BitCast(d, hn::ShiftLeft<23>(exponent));
+    const auto end = hn::Add(lo, hn::Mul(hn::Set(d, 255.0f), step));
+    const auto reaches = hn::RebindMask(du, hn::Ge(end, hi));
+    const auto is_short = hn::And(axes, hn::AndNot(reaches, hn::Lt(exponent, hn::Set(du, 254u))));
+    if (hn::AllFalse(du, is_short)) return exponent;
+    exponent = hn::Sub(exponent, hn::VecFromMask(du, is_short));
+  }
 }
 
 /// As quantise (bvh/quantise.h), to the bit.
 void quantise_children(const BinaryNode* nodes, const std::uint32_t* children, int count,
                        WideNode& wide) {
-  constexpr int kParts = kWidth / kGridLanes;
-  alignas(32) static constexpr float kNumbers[kWidth] = {0, 1, 2, 3, 4, 5, 6, 7};
-  const GridTag d;
-  const auto child = [&](int i) -> const BinaryNode& { return nodes[children[i < count ? i : 0]]; };
-  Corners lo[kParts], minus_hi[kParts];
-  for (int p = 0; p < kParts; ++p) {
-    lo[p] = corners_of(p * kGridLanes, [&](int i) { return hn::Load(Float4(), child(i).lo); });
-    minus_hi[p] =
-        corners_of(p * kGridLanes, [&](int i) { return hn::Load(Float4(), child(i).minus_hi); });
+  const Float4 d;
+  static constexpr BinaryNode kEmpty{{kFloatMax, kFloatMax, kFloatMax}, 0,
+                                     {kFloatMax, kFloatMax, kFloatMax}, 0};
+  AxisPlanes planes[3];
+  Vector4 least = hn::Set(d, kFloatMax), minus_most = least;
+  for (int i = 0; i < kWidth; i += 4) {
+    Vector4 lo[4], minus_hi[4];
+    for (int k = 0; k < 4; ++k) {
+      const BinaryNode& child = i + k < count ? nodes[children[i + k]] : kEmpty;
+      lo[k] = hn::Load(d, child.lo);
+      minus_hi[k] = hn::Load(d, child.minus_hi);
+      least = hn::Min(least, lo[k]);
+      minus_most = hn::Min(minus_most, minus_hi[k]);
+    }
+    Vector4 lower[3], minus_upper[3];
+    transpose(lo[0], lo[1], lo[2], lo[3], lower);
+    transpose(minus_hi[0], minus_hi[1], minus_hi[2], minus_hi[3], minus_upper);
+    for (int axis = 0; axis < 3; ++axis) {
+      hn::Store(lower[axis], d, planes[axis].at + i);
+      hn::Store(hn::Neg(minus_upper[axis]), d, planes[axis].at + kWidth + i);
+    }
   }
+  alignas(16) float origin[4];
+  alignas(16) std::uint32_t exponent[4];
+  hn::Store(least, d, origin);
+  hn::Store(grid_exponents(least, hn::Neg(minus_most)), hn::RebindToUnsigned<Float4>(), exponent);
   for (int axis = 0; axis < 3; ++axis) {
-    auto least = lo[0].axis[axis], minus_most = minus_hi[0].axis[axis];
-    for (int p = 1; p < kParts; ++p) {
-      least = hn::Min(least, lo[p].axis[axis]);
-      minus_most = hn::Min(minus_most, minus_hi[p].axis[axis]);
-    }
-    const float origin = hn::GetLane(hn::MinOfLanes(d, least));
-    wide.origin[axis] = origin;
-    wide.exponent[axis] = choose_grid_exponent(origin, -hn::GetLane(hn::MinOfLanes(d, minus_most)));
-    const float step = wide.step(axis);
-    const LaneGrid grid{hn::Set(d, origin), hn::Set(d, step)};
-    for (int p = 0; p < kParts; ++p) {
-      std::uint8_t* const lower = wide.q[axis][0] + p * kGridLanes;
-      std::uint8_t* const upper = wide.q[axis][1] + p * kGridLanes;
-      const auto number = hn::Add(hn::Load(d, kNumbers), hn::Set(d, float(p * kGridLanes)));
-      const auto is_used = hn::Lt(number, hn::Set(d, static_cast<float>(count)));
-      store_planes<true>(grid, 1.0f / step, lo[p].axis[axis], is_used, lower);
-      store_planes<false>(grid, 1.0f / step, hn::Neg(minus_hi[p].axis[axis]), is_used, upper);
-    }
+    wide.origin[axis] = origin[axis];
+    wide.exponent[axis] = static_cast<std::uint8_t>(exponent[axis]);
+    store_planes(planes[axis], origin[axis], wide.step(axis), wide.q[axis][0]);
   }
 }
 

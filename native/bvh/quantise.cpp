@@ -1,6 +1,7 @@
 #include "bvh/quantise.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace komorebi {
 namespace {
@@ -11,19 +12,20 @@ constexpr int kLast = 255;  ///< of the grid's planes
 struct Grid {
   float origin, step;
   float at(int q) const { return origin + static_cast<float>(q) * step; }
+  float place(float x) const {
+    return std::clamp((x - origin) * (1.0f / step), 0.0f, static_cast<float>(kLast));
+  }
 
-  /// The last plane that is not above x, the first that is not below: the guess in double is off by
-  /// what rounding in `at` does.
+  /// A plane that is not above x, or not below: the closest one, or where rounding moved its place
+  /// the next one. The first is not above anything, and the last not below.
   int below(float x) const {
-    int q = std::clamp(static_cast<int>((double(x) - double(origin)) / double(step)), 0, kLast);
-    while (q < kLast && at(q + 1) <= x) ++q;
-    while (q > 0 && at(q) > x) --q;
+    int q = static_cast<int>(std::floor(place(x)));
+    while (at(q) > x) --q;
     return q;
   }
   int above(float x) const {
-    int q = std::clamp(static_cast<int>((double(x) - double(origin)) / double(step)), 0, kLast);
-    while (q > 0 && at(q - 1) >= x) --q;
-    while (q < kLast && at(q) < x) ++q;
+    int q = static_cast<int>(std::ceil(place(x)));
+    while (at(q) < x) ++q;
     return q;
   }
 };

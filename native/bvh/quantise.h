@@ -4,23 +4,22 @@
 
 namespace komorebi {
 
-/// Lays the node's grid around `boxes` (1…8, none empty) and stores for each the smallest box on
-/// the grid that contains it, as the traversal will decode it.
+/// Lays the node's grid around `boxes` (1…8, none empty) and stores for each a box on the grid that
+/// contains it, as the traversal will decode it: the smallest one, or where rounding is in the way
+/// one step more.
 void quantise(const Aabb* boxes, int count, WideNode& node);
+
+/// A little less than 1/255: so the step that is looked at first is never too large.
+inline constexpr float kGridShare = 0.0039215f;
+/// The highest one looked at first, as a box may be larger than any float.
+inline constexpr std::uint32_t kFirstGridExponent = 247;
 
 /// The smallest step (a power of two, as WideNode::exponent) whose 255 multiples reach from lo to
 /// hi.
 inline std::uint8_t choose_grid_exponent(float lo, float hi) {
-  const double least = (double(hi) - double(lo)) / 255.0;
-  int exponent = 1;
-  if (least >= 0x1p-126) {
-    exponent = static_cast<int>(std::bit_cast<std::uint64_t>(least) >> 52) - 1023 + 127;
-    if (exponent > 254) exponent = 254;
-  }
-  const auto reaches = [&] {
-    const float step = std::bit_cast<float>(static_cast<std::uint32_t>(exponent) << 23);
-    return lo + 255.0f * step >= hi;
-  };
+  const auto least = std::bit_cast<std::uint32_t>((hi - lo) * kGridShare) >> 23;
+  std::uint32_t exponent = least < 1 ? 1 : least > kFirstGridExponent ? kFirstGridExponent : least;
+  const auto reaches = [&] { return lo + 255.0f * std::bit_cast<float>(exponent << 23) >= hi; };
   while (exponent < 254 && !reaches()) ++exponent;
   return static_cast<std::uint8_t>(exponent);
 }

@@ -29,6 +29,8 @@ struct alignas(32) WideBox {
 /// A leaf takes no more for each of its items, and no more in all.
 inline constexpr std::size_t kLeafBytes = std::size_t{ClusterView::units(1, 3)} * kClusterUnit;
 inline constexpr std::size_t kLeafMostBytes = std::size_t{ClusterView::units(8, 8)} * kClusterUnit;
+/// So many bytes are copied of any leaf, whatever stands behind it.
+inline constexpr std::size_t kLeafCopied = (kLeafMostBytes + 63) / 64 * 64;
 
 /// What is read or written behind the last value, as lanes are.
 inline constexpr std::uint32_t kBehindDesk = 16;
@@ -60,7 +62,7 @@ struct Treelet {
   PlanCost cost[2 * kTreeletSize];
   // By pack_treelet().
   WideNode staged[kTreeletSize];
-  std::byte staged_leaves[kTreeletSize * kLeafBytes + kLeafMostBytes];
+  std::byte staged_leaves[kTreeletSize * kLeafBytes + kLeafCopied];
 };
 
 /// What becomes of a treelet: a forest, whose roots go into a wide node above. Nodes and leaves are

@@ -17,18 +17,18 @@ class RunCuts {
   void find(const BinaryNode* nodes, std::uint32_t count, float price, float scale, bool alone) {
     take_boxes(nodes, count);
     measure(count, scale);
-    float sum = 0.0f;
-    for (std::uint32_t i = 0; i < count; ++i) sum += area(i);
-    choose(count, price * sum / static_cast<float>(count), alone);
+    sum_areas(count);
+    choose(count, price * sum_ / static_cast<float>(count), alone);
     ends_ = 0;
     for (std::uint32_t end = count; end > 0; end -= length_[end - 1]) end_[ends_++] = end;
   }
   std::uint32_t count() const { return ends_; }
   /// The end of run i.
   std::uint32_t end(std::uint32_t i) const { return end_[ends_ - 1 - i]; }
-  /// The area of a box; of the run that ends with it.
+  /// The area of a box; of the run that ends with it; of all boxes.
   float area(std::uint32_t i) const { return area_[0][kBefore + i]; }
   float area_of_run(std::uint32_t i) const { return area_[length_[i] - 1][kBefore + i]; }
+  float sum_of_areas() const { return sum_; }
 
   static constexpr std::uint32_t kMost = kTreeletSize;
 
@@ -81,21 +81,47 @@ class RunCuts {
     }
   }
 
+  /// In sixteen parts, whatever the number of lanes.
+  void sum_areas(std::uint32_t count) {
+    const Tag d;
+    constexpr std::uint32_t kParts = 16 / kLanes;
+    float* const area = area_[0] + kBefore;
+    std::fill_n(area + count, kBehindDesk, 0.0f);
+    Numbers sum[kParts];
+    for (auto& part : sum) part = hn::Zero(d);
+    for (std::uint32_t i = 0; i < count; i += 16) {
+      for (std::uint32_t p = 0; p < kParts; ++p) {
+        sum[p] = hn::Add(sum[p], hn::LoadU(d, area + i + p * kLanes));
+      }
+    }
+    alignas(64) float part[16];
+    for (std::uint32_t p = 0; p < kParts; ++p) hn::Store(sum[p], d, part + p * kLanes);
+    sum_ = 0.0f;
+    for (const float its : part) sum_ += its;
+  }
+
   void choose(std::uint32_t count, float price, bool alone) {
     // Costs are not negative: their bits have their order, and the lowest three hold the length.
+    // One lane: each cost waits for the one before, and would wait longer on its way to integers.
+    const hn::FixedTag<float, 1> d;
+    const hn::FixedTag<std::uint32_t, 1> du;
     constexpr std::uint32_t kLength = kWidth - 1;
+    const auto of_cost = hn::Set(du, ~kLength);
     std::fill_n(cost_, kBefore, kFloatMax);
     cost_[kBefore - 1] = 0.0f;
-    const float alone_price = alone ? price : kFloatMax;
+    const auto node_price = hn::Set(d, price), alone_price = hn::Set(d, alone ? price : kFloatMax);
+    auto last = hn::Zero(d);
     for (std::uint32_t i = kBefore; i < kBefore + count; ++i) {
-      std::uint32_t best = std::bit_cast<std::uint32_t>(cost_[i - 1] + alone_price) & ~kLength;
-      for (std::uint32_t k = 1; k < kWidth; ++k) {
-        const float cost = cost_[i - 1 - k] + (area_[k][i] + price);
-        const std::uint32_t bits = (std::bit_cast<std::uint32_t>(cost) & ~kLength) | k;
-        best = bits < best ? bits : best;
+      auto best = hn::Set(du, ~0u);
+      for (std::uint32_t k = kWidth - 1; k > 0; --k) {
+        const auto run = hn::Add(hn::Load(d, area_[k] + i), node_price);
+        const auto cost = hn::BitCast(du, hn::Add(hn::Load(d, cost_ + i - 1 - k), run));
+        best = hn::Min(best, hn::Or(hn::And(cost, of_cost), hn::Set(du, k)));
       }
-      length_[i - kBefore] = (best & kLength) + 1;
-      cost_[i] = std::bit_cast<float>(best & ~kLength);
+      best = hn::Min(best, hn::And(hn::BitCast(du, hn::Add(last, alone_price)), of_cost));
+      last = hn::BitCast(d, hn::And(best, of_cost));
+      hn::Store(hn::Add(hn::AndNot(of_cost, best), hn::Set(du, 1u)), du, length_ + i - kBefore);
+      hn::Store(last, d, cost_ + i);
     }
   }
 
@@ -106,6 +132,7 @@ class RunCuts {
   std::uint32_t length_[kMost];
   std::uint32_t end_[kMost];
   std::uint32_t ends_ = 0;
+  float sum_ = 0.0f;
 };
 
 }  // namespace

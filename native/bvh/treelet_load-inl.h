@@ -5,6 +5,9 @@ namespace komorebi {
 namespace HWY_NAMESPACE {
 namespace {
 
+/// Four numbers a triangle: its vertices, and kNone.
+using Corners4 = std::uint32_t[4];
+
 /// Reads vertices as four lanes; the last one has no float behind it that could be read.
 class VertexReader {
  public:
@@ -117,12 +120,50 @@ void load(const Items& items, const KeyIndex<std::uint32_t>* strips, std::uint32
   load_boxes<true>(items, t);
 }
 
+/// Four triangles of the mesh, each with kNone behind its corners.
+HWY_INLINE void put_four(const std::uint32_t* corner, Corners4* to) {
+  const hn::FixedTag<std::uint32_t, 4> d;
+  alignas(16) static constexpr std::uint32_t kFourth[4] = {0, 0, 0, kNone};
+  const auto fourth = hn::Load(d, kFourth);
+  for (int k = 0; k < 4; ++k) hn::Store(hn::Or(hn::LoadU(d, corner + 3 * k), fourth), d, to[k]);
+}
+
+/// Each strip has four triangles, of which the next strip's take the place of what is too much:
+/// how many it has cannot be predicted.
 void load_corners(const Items& items, const KeyIndex<std::uint32_t>* strips, std::uint32_t count,
                   Treelet& t) {
-  list_triangles<true>(strips, count, t);
-  if (!items.are_triangles()) return;
-  for_each_triangle(
-      items, t, [&](std::uint32_t i, const std::uint32_t* corner) { put_corners(corner, i, t); });
+  if (!items.are_triangles()) return list_triangles<true>(strips, count, t);
+  const hn::FixedTag<std::uint32_t, kMostInStrip> d;
+  const auto following = hn::Iota(d, 0);
+  const std::uint32_t* const corners = items.tri2vtx.data();
+  const float* const vertices = items.vtx2xyz.data();
+  const std::uint32_t last_whole = static_cast<std::uint32_t>(items.count()) - kMostInStrip - 1;
+  const auto strip_later = [&](std::uint32_t i) { return strips[i < count ? i : count - 1].index; };
+  const auto corners_of = [&](std::uint32_t triangle) { return corners + 3 * std::size_t{triangle}; };
+  std::uint32_t at = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t* const far = corners_of(strip_first(strip_later(i + kIndicesAhead)));
+    hwy::Prefetch(far);
+    hwy::Prefetch(far + 3 * kMostInStrip);
+    const std::uint32_t near = strip_later(i + kVerticesAhead);
+    const std::uint32_t* const next = corners_of(strip_first(near));
+    for (int k = 0; k < 3; ++k) hwy::Prefetch(vertices + 3 * std::size_t{next[k]});
+    const std::uint32_t* const last = next + 3 * (near >> kStripShift);
+    for (int k = 0; k < 3; ++k) hwy::Prefetch(vertices + 3 * std::size_t{last[k]});
+
+    const std::uint32_t strip = strips[i].index, first = strip_first(strip);
+    hn::StoreU(hn::Add(hn::Set(d, first), following), d, t.primitive + at);
+    hn::StoreU(hn::Set(d, strips[i].key), d, t.code + at);
+    if (HWY_LIKELY(static_cast<std::int32_t>(first) < static_cast<std::int32_t>(last_whole))) {
+      put_four(corners_of(first), t.corner + at);
+    } else {
+      std::uint32_t end[3 * kMostInStrip + 1] = {};
+      std::copy_n(corners_of(first), 3 * strip_count(strip), end);
+      put_four(end, t.corner + at);
+    }
+    at += strip_count(strip);
+  }
+  t.triangle_count = at;
 }
 
 /// Two neighbours become one item if the area of the common box is at most that of the larger one

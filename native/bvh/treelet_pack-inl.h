@@ -23,6 +23,7 @@ class PackedTreelet {
     to_.cost = 0.0f;
     std::uint32_t count = make_leaves();
     if (count == 1) {
+      to_.cost = area_of(node_box(t_.nodes[0]), scale_) * kLeafCost;
       place_leaf(t_.nodes[0]);
       to_.leaves += to_.leaf_units * items_.leaf_unit();
       to_.leaf_units = 0;
@@ -52,7 +53,6 @@ class PackedTreelet {
       const WrittenLeaf leaf = write_leaf(begin, end - begin, length.firsts(begin),
                                           t_.staged_leaves + unit * items_.leaf_unit());
       write_node(t_.nodes[leaves++], leaf.box, unit, leaf.info);
-      to_.cost += area_of(leaf.box, scale_) * kLeafCost;
       unit += items_.leaf_units(leaf.info & 255u, leaf.info >> 8);
       begin = end;
     }
@@ -72,6 +72,7 @@ class PackedTreelet {
   /// Wide nodes over the first `count` of t_.nodes, and in their place in it. Returns how many.
   std::uint32_t make_nodes(std::uint32_t count, bool alone) {
     cuts_.find(t_.nodes, count, kNodePrice, scale_, alone);
+    if (to_.depth == 0) to_.cost = cuts_.sum_of_areas() * kLeafCost;
     std::uint32_t begin = 0;
     for (std::uint32_t i = 0; i < cuts_.count(); ++i) {
       const std::uint32_t end = cuts_.end(i);
@@ -120,9 +121,15 @@ class PackedTreelet {
   }
 
   HWY_INLINE void place_leaf(const BinaryNode& leaf) {
-    // As many bytes as the largest record has: those behind are overwritten by the next one.
-    std::memcpy(to_.leaves + to_.leaf_units * items_.leaf_unit(),
-                t_.staged_leaves + leaf.first * items_.leaf_unit(), kLeafMostBytes);
+    // What is too much the next one overwrites.
+    const hn::CappedTag<std::uint8_t, 64> d;
+    const auto* const from =
+        reinterpret_cast<const std::uint8_t*>(t_.staged_leaves + leaf.first * items_.leaf_unit());
+    auto* const to =
+        reinterpret_cast<std::uint8_t*>(to_.leaves + to_.leaf_units * items_.leaf_unit());
+    for (std::size_t i = 0; i < kLeafCopied; i += hn::Lanes(d)) {
+      hn::StoreU(hn::LoadU(d, from + i), d, to + i);
+    }
     to_.leaf_units += items_.leaf_units(leaf.leaf_count(), leaf.leaf_vertices());
   }
 

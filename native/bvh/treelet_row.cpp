@@ -52,7 +52,7 @@ TreeletRow::Shelf TreeletRow::take_shelf(std::uint32_t treelet, std::size_t item
     const std::size_t room =
         std::max<std::size_t>(items, std::min<std::size_t>(kTreeletSize, items_.count()));
     shelf.nodes = Scratch<WideNode>(room);
-    shelf.leaves = Scratch<std::byte>(room * kLeafBytes + kLeafMostBytes);
+    shelf.leaves = Scratch<std::byte>(room * kLeafBytes + kLeafCopied);
   }
   treelets_[treelet].root_nodes = shelf.nodes.data();
   treelets_[treelet].root_leaves = shelf.leaves.data();

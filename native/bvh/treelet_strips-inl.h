@@ -13,6 +13,8 @@ using BlockIndices = hn::Vec<BlockIndexTag>;
 
 /// Strips are looked for in blocks of so many triangles, a bit each.
 constexpr std::uint32_t kBlock = 64;
+/// Fewer in a block are hardly neighbours: no two are looked for that could be one.
+constexpr int kManyPairs = 6;
 /// What is read or written behind a block.
 constexpr std::uint32_t kBehindBlock = 16;
 
@@ -81,10 +83,13 @@ class StripBlock {
     }
     const std::uint64_t kept = all & ~left_out;
     count = kBlock;
-    const std::uint64_t pairs = small_unions(scale) & common_edges();
-    join(every_other(pairs & kept & kept >> 1 & all >> 1), kept);
-    const std::uint64_t joined = (count < kBlock ? std::uint64_t{1} << count : 0) - 1;
-    join(every_other(small_unions(scale) & neighbours() & joined >> 1), joined);
+    const std::uint64_t pairs =
+        every_other(small_unions(scale) & common_edges() & kept & kept >> 1 & all >> 1);
+    if (pairs != 0 || kept != ~0ull) join(pairs, kept);
+    if (std::popcount(pairs) >= kManyPairs) {
+      const std::uint64_t there = (count < kBlock ? std::uint64_t{1} << count : 0) - 1;
+      join(every_other(small_unions(scale) & neighbours() & there >> 1), there);
+    }
     return static_cast<std::uint32_t>(std::popcount(left_out));
   }
 
