@@ -19,9 +19,12 @@ Aabb core_of_sample(std::span<const Aabb> sample) {
   for (int axis = 0; axis < 3; ++axis) {
     values.clear();
     for (const Aabb& box : sample) values.push_back(centre(box)[axis]);
-    std::sort(values.begin(), values.end());
-    middle.lo[axis] = values[values.size() / 32];
-    middle.hi[axis] = values[values.size() - 1 - values.size() / 32];
+    const auto from = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 32);
+    const auto to = values.end() - 1 - (from - values.begin());
+    std::nth_element(values.begin(), from, values.end());
+    middle.lo[axis] = *from;
+    std::nth_element(from, to, values.end());
+    middle.hi[axis] = *to;
   }
   return padded(middle, longest_side(middle));
 }

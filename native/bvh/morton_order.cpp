@@ -14,7 +14,10 @@ namespace komorebi {
 namespace {
 
 constexpr std::size_t kGrain = 16384;
-constexpr std::size_t kSamples = 1024;
+/// Items are looked at in so many places, in each a few that stand together in memory.
+constexpr std::size_t kPlaces = 256, kInPlace = 4;
+/// Workers take so many parts of the sample.
+constexpr std::size_t kSampleParts = 4;
 
 template <class T>
 Scratch<T> touched(std::size_t count, ThreadPool& pool) {
@@ -25,7 +28,7 @@ Scratch<T> touched(std::size_t count, ThreadPool& pool) {
 
 /// Asks for what a walk of this stride reads some steps later: each is in a page of its own.
 void fetch_later(const Items& items, std::size_t i, std::size_t stride) {
-  constexpr std::size_t kIndicesAhead = 32, kVerticesAhead = 16;
+  constexpr std::size_t kIndicesAhead = 16, kVerticesAhead = 8;
 #if defined(__GNUC__)
   if (!items.are_triangles() || i + kIndicesAhead * stride >= items.count()) return;
   __builtin_prefetch(&items.tri2vtx[3 * (i + kIndicesAhead * stride)]);
@@ -36,37 +39,57 @@ void fetch_later(const Items& items, std::size_t i, std::size_t stride) {
 #endif
 }
 
-std::vector<Aabb> sample_of(const Items& items) {
-  std::vector<Aabb> sample;
-  const std::size_t count = items.count();
-  const std::size_t stride = std::max<std::size_t>(1, count / kSamples);
-  sample.reserve(count / stride + 1);
-  for (std::size_t i = 0; i < count; i += stride) {
-    fetch_later(items, i, stride);
-    if (!items.is_left_out(i)) sample.push_back(items.box(i));
+/// One part of some boxes from everywhere.
+std::vector<Aabb> sample_part(const Items& items, std::size_t part) {
+  std::vector<Aabb> boxes;
+  const std::size_t stride = std::max(kInPlace, items.count() / kPlaces);
+  const std::size_t places = (items.count() + stride - 1) / stride;
+  const std::size_t end = places * (part + 1) / kSampleParts;
+  boxes.reserve(kInPlace * (places / kSampleParts + 1));
+  for (std::size_t place = places * part / kSampleParts; place < end; ++place) {
+    const std::size_t first = place * stride, last = std::min(first + kInPlace, items.count());
+    fetch_later(items, first, stride);
+    for (std::size_t i = first; i < last; ++i) {
+      if (!items.is_left_out(i)) boxes.push_back(items.box(i));
+    }
   }
-  for (std::size_t i = 0; i < count && sample.empty(); ++i) {
-    if (!items.is_left_out(i)) sample.push_back(items.box(i));
+  return boxes;
+}
+
+/// Bounds of some points, by fours: each minimum would wait for the one before it.
+Aabb extent_of_points(const float* xyz, std::size_t count) {
+  constexpr std::size_t kFour = 12;  // numbers
+  float lo[kFour], hi[kFour];
+  std::fill_n(lo, kFour, kFloatMax);
+  std::fill_n(hi, kFour, -kFloatMax);
+  std::size_t i = 0;
+  for (; i + kFour <= 3 * count; i += kFour) {
+    for (std::size_t k = 0; k < kFour; ++k) {
+      lo[k] = min_of(lo[k], xyz[i + k]);
+      hi[k] = max_of(hi[k], xyz[i + k]);
+    }
   }
-  return sample;
+  for (std::size_t k = 0; i + k < 3 * count; ++k) {
+    lo[k] = min_of(lo[k], xyz[i + k]);
+    hi[k] = max_of(hi[k], xyz[i + k]);
+  }
+  Aabb bounds;
+  for (std::size_t k = 0; k < kFour; ++k) {
+    const int axis = static_cast<int>(k % 3);
+    bounds.lo[axis] = min_of(bounds.lo[axis], lo[k]);
+    bounds.hi[axis] = max_of(bounds.hi[axis], hi[k]);
+  }
+  return bounds;
 }
 
 /// Bounds of some vertices, or of some boxes.
 Aabb extent(const Items& items, std::size_t begin, std::size_t end) {
-  Aabb part;
   if (items.are_triangles()) {
-    const float* xyz = items.vtx2xyz.data();
-    for (std::size_t i = begin; i < end; ++i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const float x = xyz[3 * i + static_cast<std::size_t>(axis)];
-        part.lo[axis] = min_of(part.lo[axis], x);
-        part.hi[axis] = max_of(part.hi[axis], x);
-      }
-    }
-  } else {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!items.boxes[i].is_empty()) part = united(part, items.boxes[i]);
-    }
+    return extent_of_points(items.vtx2xyz.data() + 3 * begin, end - begin);
+  }
+  Aabb part;
+  for (std::size_t i = begin; i < end; ++i) {
+    if (!items.boxes[i].is_empty()) part = united(part, items.boxes[i]);
   }
   return part;
 }
@@ -81,20 +104,28 @@ Overview look_over(const Items& items, ThreadPool& pool, const Cancel& cancel) {
   Overview overview;
   std::mutex mutex;
   const std::size_t count = items.are_triangles() ? items.vtx2xyz.size() / 3 : items.boxes.size();
-  // One of the chunks is the sample, which waits for memory most of the time.
-  const std::size_t chunks = (count + 4 * kGrain - 1) / (4 * kGrain) + 1;
+  std::vector<Aabb> sample[kSampleParts];
+  // The first chunks are the sample, which waits for memory most of the time.
+  const std::size_t chunks = kSampleParts + (count + 4 * kGrain - 1) / (4 * kGrain);
   pool.for_each_chunk(chunks, 1, [&](std::size_t chunk, std::size_t) {
     if (cancel.raised()) return;
-    if (chunk == 0) {
-      overview.sample = sample_of(items);
+    if (chunk < kSampleParts) {
+      sample[chunk] = sample_part(items, chunk);
       return;
     }
-    const std::size_t begin = (chunk - 1) * 4 * kGrain;
+    const std::size_t begin = (chunk - kSampleParts) * 4 * kGrain;
     const Aabb part = extent(items, begin, std::min(count, begin + 4 * kGrain));
     const std::lock_guard lock(mutex);
     overview.all = united(overview.all, part);  // min and max: the order does not show
   });
   check(cancel);
+  for (const auto& part : sample) {
+    overview.sample.insert(overview.sample.end(), part.begin(), part.end());
+  }
+  // All that was looked at is left out: any other one will do.
+  for (std::size_t i = 0; i < items.count() && overview.sample.empty(); ++i) {
+    if (!items.is_left_out(i)) overview.sample.push_back(items.box(i));
+  }
   return overview;
 }
 

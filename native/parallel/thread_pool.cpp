@@ -29,7 +29,7 @@ void stay_awake_until(const Condition& is_met) {
 
 }  // namespace
 
-ThreadPool::ThreadPool(unsigned threads) : size_(choose_size(threads)) {
+ThreadPool::ThreadPool(unsigned threads) : size_(choose_size(threads)), places_(size_) {
   threads_.reserve(size_ - 1);
   try {
     for (unsigned worker = 1; worker < size_; ++worker) {
@@ -65,12 +65,14 @@ void ThreadPool::work(unsigned worker) {
   unsigned seen = 0;
   std::unique_lock lock(mutex_);
   while (true) {
+    places_.set_asleep(worker, true);
     start_.wait(lock, [&] { return stop_ || (generation_ != seen && worker < workers_); });
+    places_.set_asleep(worker, false);
     if (stop_) return;
     seen = generation_;
     const FunctionRef<void(unsigned)> body = *body_;
     lock.unlock();
-    places_.take(seen);
+    places_.take(seen, worker);
     call(body, worker);
     lock.lock();
     if (--unfinished_ == 0) done_.notify_one();
@@ -89,7 +91,7 @@ void ThreadPool::run(unsigned workers, FunctionRef<void(unsigned)> body) {
     for (unsigned worker = 0; worker < workers; ++worker) body(worker);
     return;
   }
-  places_.take(generation_ + 1);  // before all others: the host's thread is not to move
+  places_.prepare(generation_ + 1, std::span(threads_).first(workers - 1));
   {
     const std::lock_guard lock(mutex_);
     body_ = &body;

@@ -42,9 +42,9 @@ class ThreadPool {
   void call(FunctionRef<void(unsigned)> body, unsigned worker);
 
   unsigned size_;
+  WorkerPlaces places_;
   std::vector<std::thread> threads_;
   std::mutex in_use_;  ///< held by the thread whose run() the pool is working on
-  WorkerPlaces places_;
 
   std::mutex mutex_;  ///< guards all changes of what is below
   std::condition_variable start_, done_;
