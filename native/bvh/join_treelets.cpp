@@ -16,6 +16,8 @@ class TreeletJoiner {
 
   /// Wide nodes of the top and inner roots, breadth-first: so siblings stand together.
   void lay_out() {
+    places_.reserve(2 * row_.root_room());
+    nodes_.reserve(2 * row_.root_room());
     places_.push_back({0, 1, nullptr, 0});
     if (is_treelet(top_[0]) && !treelets_[top_[0].first].root[0].is_leaf()) {
       const std::uint32_t treelet = top_[0].first;

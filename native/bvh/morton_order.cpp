@@ -154,7 +154,7 @@ std::uint32_t split_of(const MortonOrder& order, std::uint32_t first, std::uint3
   return high;
 }
 
-/// `code`: of the build kernel. Counts go to `order`; the first order.count are what is returned.
+/// `code`: of the build kernel. Counts go to `order`.
 template <class Key>
 Scratch<KeyIndex<Key>> sorted_strips(const Items& items,
                                      StripCount (*code)(const Items&, const MortonGrid&,
@@ -172,15 +172,15 @@ Scratch<KeyIndex<Key>> sorted_strips(const Items& items,
                          static_cast<std::uint32_t>(end), found.data() + begin);
   });
   check(cancel);
-  std::vector<std::span<KeyIndex<Key>>> pieces;
+  std::vector<std::span<const KeyIndex<Key>>> pieces;
   for (std::size_t chunk = 0; chunk < counts.size(); ++chunk) {
     pieces.emplace_back(found.data() + chunk * kGrain, counts[chunk].strips);
     order.count += counts[chunk].strips;
     order.left_out += counts[chunk].left_out;
   }
-  Scratch<KeyIndex<Key>> scratch = touched<KeyIndex<Key>>(order.count, pool);
-  radix_sort(pieces, {scratch.data(), scratch.size()}, pool, cancel, bits);
-  return found;
+  Scratch<KeyIndex<Key>> sorted = touched<KeyIndex<Key>>(order.count, pool);
+  radix_sort(pieces, {sorted.data(), sorted.size()}, pool, cancel, bits);
+  return sorted;
 }
 
 }  // namespace

@@ -33,6 +33,8 @@ class TreeletRow {
   /// kept. @throws std::invalid_argument: too many items
   void put(std::uint32_t treelet, Shelf shelf);
 
+  /// Treelets have no more roots.
+  std::size_t root_room() const { return roots_.size(); }
   /// When all are there: what stands behind them.
   std::uint32_t node_end() const { return node_end_; }
   std::uint32_t leaf_end() const { return leaf_end_; }  ///< in units

@@ -25,8 +25,8 @@ void expect_sorted_as_std(const std::vector<Key>& keys) {
     ThreadPool pool(threads);
     const Cancel cancel;
     // In pieces of different sizes, some empty, with gaps between them.
-    std::vector<KeyIndex<Key>> items(unsorted.size() + 4 * kGap), scratch(keys.size());
-    std::vector<std::span<KeyIndex<Key>>> pieces;
+    std::vector<KeyIndex<Key>> items(unsorted.size() + 4 * kGap), sorted(keys.size());
+    std::vector<std::span<const KeyIndex<Key>>> pieces;
     for (std::size_t k = 0; k < 4; ++k) {
       const std::size_t begin = unsorted.size() * k * k / 16;
       const std::size_t end = unsorted.size() * (k + 1) * (k + 1) / 16;
@@ -36,10 +36,10 @@ void expect_sorted_as_std(const std::vector<Key>& keys) {
       pieces.push_back(piece);
       if (k == 1) pieces.push_back(piece.subspan(piece.size()));
     }
-    radix_sort(pieces, scratch, pool, cancel);
+    radix_sort(pieces, sorted, pool, cancel);
     for (std::size_t i = 0; i < expected.size(); ++i) {
-      ASSERT_EQ(items[i].key, expected[i].key) << "position " << i << ", " << threads << " threads";
-      ASSERT_EQ(items[i].index, expected[i].index) << "position " << i;
+      ASSERT_EQ(sorted[i].key, expected[i].key) << "position " << i << ", " << threads << " threads";
+      ASSERT_EQ(sorted[i].index, expected[i].index) << "position " << i;
     }
   }
 }
@@ -81,9 +81,9 @@ TEST(RadixSort, StopsWhenCancelled) {
   ThreadPool pool(2);
   Cancel cancel;
   cancel.raise();
-  std::vector<KeyIndex<std::uint32_t>> items(100000), scratch(items.size());
-  const std::vector<std::span<KeyIndex<std::uint32_t>>> pieces{items};
-  EXPECT_THROW(radix_sort(pieces, scratch, pool, cancel), Cancelled);
+  std::vector<KeyIndex<std::uint32_t>> items(100000), sorted(items.size());
+  const std::vector<std::span<const KeyIndex<std::uint32_t>>> pieces{items};
+  EXPECT_THROW(radix_sort(pieces, sorted, pool, cancel), Cancelled);
 }
 
 }  // namespace
