@@ -84,9 +84,9 @@ void Grove::give_rooms(std::uint32_t node) {
 }
 
 void Grove::grow(std::uint32_t treelets, FunctionRef<void(std::uint32_t, Treelet&)> load,
-                 void (*make)(const Items&, float, Treelet&, WideTreelet&)) {
+                 void (*make)(const Items&, float, Treelet&, WideTreelet&), TreeRoom room) {
   if (!is_planned_) prepare(treelets);
-  row_.emplace(items_, std::span(treelets_.data(), treelets), pool_);
+  row_.emplace(items_, std::span(treelets_.data(), treelets), std::move(room));
   std::atomic<std::uint32_t> next{0};
   pool_.run(std::min(pool_.size(), treelets), [&](unsigned) {
     Scratch<Treelet> desk(1);
@@ -103,7 +103,7 @@ void Grove::grow(std::uint32_t treelets, FunctionRef<void(std::uint32_t, Treelet
 
 void Grove::transplant(const BinaryTree& tree) {
   prepare(1);
-  row_.emplace(items_, std::span(treelets_.data(), 1), pool_);
+  row_.emplace(items_, std::span(treelets_.data(), 1), TreeRoom(items_, pool_, [] {}));
   TreeletRow::Shelf shelf = row_->take_shelf(0, tree.item_count);
   kernel_.emit_tree(items_, tree, treelets_[0]);
   row_->put(0, std::move(shelf));

@@ -36,9 +36,9 @@ class Grove {
   void plan_top(std::uint32_t treelets);
 
   /// All treelets: `load(index, desk)` puts its items on the desk, `make` is the kernel's function
-  /// that makes nodes of them. @throws Cancelled
+  /// that makes nodes of them, which come to stand in `room`. @throws Cancelled
   void grow(std::uint32_t treelets, FunctionRef<void(std::uint32_t, Treelet&)> load,
-            void (*make)(const Items&, float, Treelet&, WideTreelet&));
+            void (*make)(const Items&, float, Treelet&, WideTreelet&), TreeRoom room);
 
   /// One treelet from a whole planned tree, of any size.
   void transplant(const BinaryTree& tree);

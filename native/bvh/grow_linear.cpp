@@ -10,7 +10,7 @@ WideTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cancel)
   MortonOrder order = order_by_morton(items, pool, cancel);
   if (order.count > 0) {
     RunTree top;
-    top.cut(order, kRunSize);
+    TreeRoom room(items, pool, [&] { top.cut(order, kRunSize); });
     const float scale = 1.0f / max_of(order.largest_side, 1e-30f);
     Grove grove(items, static_cast<std::uint32_t>(top.runs.size()), scale, pool, cancel);
     for (std::uint32_t i = 0; i < top.nodes.size(); ++i) {
@@ -24,11 +24,12 @@ WideTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cancel)
     }
     const BuildKernel& kernel = build_kernel();
     const auto load = [&](std::uint32_t i, Treelet& t) {
-      KeyIndex<std::uint32_t> room[kRunSize];
+      KeyIndex<std::uint32_t> narrow[kRunSize];
       const Run run = top.runs[i];
-      kernel.load_corners(items, order.narrow_run(run, room), run.count, t);
+      kernel.load_corners(items, order.narrow_run(run, narrow), run.count, t);
     };
-    grove.grow(static_cast<std::uint32_t>(top.runs.size()), load, kernel.pack_treelet);
+    grove.grow(static_cast<std::uint32_t>(top.runs.size()), load, kernel.pack_treelet,
+               std::move(room));
     wide = grove.finish();
   }
   wide.left_out = order.left_out;

@@ -196,7 +196,8 @@ class SahBuilder {
       }
       kernel_.load(items_, strips, count, t);
     };
-    grove_.grow(treelet_count_, load, kernel_.sah_treelet);
+    grove_.grow(treelet_count_, load, kernel_.sah_treelet,
+                TreeRoom(items_, pool_, [] {}));
   }
 
   const Items& items_;

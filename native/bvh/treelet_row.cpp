@@ -4,13 +4,10 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "parallel/first_touch.h"
+#include "parallel/pages.h"
 
 namespace komorebi {
 namespace {
-
-/// Trees take more than that for each item.
-constexpr std::size_t kLeastNodeBytes = 6, kLeastLeafBytes = 16;
 
 std::size_t count_roots(std::span<const WideTreelet> treelets) {
   std::size_t count = 0;
@@ -20,24 +17,8 @@ std::size_t count_roots(std::span<const WideTreelet> treelets) {
 
 }  // namespace
 
-TreeletRow::TreeletRow(const Items& items, std::span<WideTreelet> treelets, ThreadPool& pool)
-    : items_(items), treelets_(treelets), roots_(count_roots(treelets)) {
-  // Each node but the root has two children at least.
-  nodes_ = LateArray<WideNode>(items.count() + 1);
-  if (items.are_triangles()) {
-    clusters_ = LateArray<std::byte>(items.count() * kLeafBytes + kClusterSlack);
-  } else {
-    box_leaves_ = LateArray<std::uint32_t>(items.count());
-  }
-  // What any tree takes is backed by all workers at once, the rest when it is needed.
-  const auto back = [&](void* room, std::size_t bytes) {
-    const std::size_t pages = bytes / kHugePage;
-    touch_pages(room, pages * kHugePage, pool);
-    return pages;
-  };
-  nodes_backed_ = back(nodes_.room(), kLeastNodeBytes * items.count());
-  leaves_backed_ = back(leaf_room(), (items.are_triangles() ? kLeastLeafBytes : 4) * items.count());
-}
+TreeletRow::TreeletRow(const Items& items, std::span<WideTreelet> treelets, TreeRoom room)
+    : items_(items), treelets_(treelets), room_(std::move(room)), roots_(count_roots(treelets)) {}
 
 TreeletRow::Shelf TreeletRow::take_shelf(std::uint32_t treelet, std::size_t items) {
   Shelf shelf;
@@ -72,11 +53,11 @@ void TreeletRow::put(std::uint32_t treelet, Shelf shelf) {
       pages[0] = backed;
       backed = pages[1] = std::max(backed, bytes / kHugePage + 2);
     };
-    advance(node_end_ * sizeof(WideNode), nodes_backed_, nodes);
-    advance(leaf_end_ * items_.leaf_unit(), leaves_backed_, leaves);
+    advance(node_end_ * sizeof(WideNode), room_.nodes_backed, nodes);
+    advance(leaf_end_ * items_.leaf_unit(), room_.leaves_backed, leaves);
   }
-  nodes_.back(nodes[0] * kHugePage, nodes[1] * kHugePage);
-  clusters_.back(leaves[0] * kHugePage, leaves[1] * kHugePage);
+  room_.nodes.back(nodes[0] * kHugePage, nodes[1] * kHugePage);
+  room_.clusters.back(leaves[0] * kHugePage, leaves[1] * kHugePage);
   for (const Done& done : ready) move_in(treelets_[done.treelet]);
   const std::lock_guard lock(mutex_);
   for (Done& done : ready) free_.push_back(std::move(done.shelf));
@@ -116,7 +97,7 @@ void TreeletRow::find_places(std::vector<Done>& ready) {
 }
 
 void TreeletRow::move_in(const WideTreelet& treelet) {
-  WideNode* const to = nodes_.room() + treelet.first_node;
+  WideNode* const to = room_.nodes.room() + treelet.first_node;
   for (std::uint32_t k = 0; k < treelet.node_count; ++k) {
     WideNode node = treelet.nodes[k];
     node.first_child += treelet.first_node;
@@ -129,20 +110,20 @@ void TreeletRow::move_in(const WideTreelet& treelet) {
 
 void TreeletRow::finish(std::span<const WideNode> top, std::span<const std::byte> leaves,
                         WideTree& wide) {
-  nodes_.room()[0] = top[0];
-  std::copy(top.begin() + 1, top.end(), nodes_.room() + node_end_);
+  room_.nodes.room()[0] = top[0];
+  std::copy(top.begin() + 1, top.end(), room_.nodes.room() + node_end_);
   const std::size_t unit = items_.leaf_unit(), leaf_bytes = leaf_end_ * unit;
   std::copy(leaves.begin(), leaves.end(), leaf_room() + leaf_bytes);
   const std::size_t end = leaf_bytes + leaves.size();
-  nodes_.end_at(node_end_ + top.size() - 1);
-  wide.nodes = std::move(nodes_);
+  room_.nodes.end_at(node_end_ + top.size() - 1);
+  wide.nodes = std::move(room_.nodes);
   if (items_.are_triangles()) {
-    std::memset(clusters_.room() + end, 0, kClusterSlack);
-    clusters_.end_at(end + kClusterSlack);
-    wide.clusters = std::move(clusters_);
+    std::memset(room_.clusters.room() + end, 0, kClusterSlack);
+    room_.clusters.end_at(end + kClusterSlack);
+    wide.clusters = std::move(room_.clusters);
   } else {
-    box_leaves_.end_at(end / unit);
-    wide.leaves = std::move(box_leaves_);
+    room_.box_leaves.end_at(end / unit);
+    wide.leaves = std::move(room_.box_leaves);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "bvh/tree_room.h"
 #include "bvh/treelet.h"
 #include "bvh/wide_tree.h"
 #include "parallel/thread_pool.h"
@@ -24,7 +25,7 @@ class TreeletRow {
     Scratch<std::byte> leaves;
   };
 
-  TreeletRow(const Items& items, std::span<WideTreelet> treelets, ThreadPool& pool);
+  TreeletRow(const Items& items, std::span<WideTreelet> treelets, TreeRoom room);
 
   /// Room for a treelet of so many items, to be written from treelet.root_nodes and
   /// treelet.root_leaves on.
@@ -50,24 +51,21 @@ class TreeletRow {
   void find_places(std::vector<Done>& ready);
   void move_in(const WideTreelet& treelet);
   std::byte* leaf_room() {
-    return items_.are_triangles() ? clusters_.room()
-                                  : reinterpret_cast<std::byte*>(box_leaves_.room());
+    return items_.are_triangles() ? room_.clusters.room()
+                                  : reinterpret_cast<std::byte*>(room_.box_leaves.room());
   }
 
   const Items& items_;
   std::span<WideTreelet> treelets_;
-  LateArray<WideNode> nodes_;
-  LateArray<std::byte> clusters_;
-  LateArray<std::uint32_t> box_leaves_;
+  TreeRoom room_;
   Scratch<WideNode> roots_;
   std::atomic<std::uint32_t> root_count_{0};
 
-  std::mutex mutex_;  ///< guards everything below
+  std::mutex mutex_;  ///< guards everything below, and the numbers in room_
   std::vector<Shelf> free_;
   std::vector<Done> waiting_;  ///< for those before them
   std::uint32_t next_ = 0;     ///< treelet to be placed
   std::uint32_t node_end_ = 1, leaf_end_ = 0;
-  std::size_t nodes_backed_ = 0, leaves_backed_ = 0;  ///< huge pages that somebody has asked for
   std::vector<Scratch<std::byte>> root_leaves_;
 };
 
