@@ -103,7 +103,7 @@ void Grove::grow(std::uint32_t treelets, FunctionRef<void(std::uint32_t, Treelet
 
 void Grove::transplant(const BinaryTree& tree) {
   prepare(1);
-  row_.emplace(items_, std::span(treelets_.data(), 1), TreeRoom(items_, pool_, [] {}));
+  row_.emplace(items_, std::span(treelets_.data(), 1), TreeRoom(items_));
   TreeletRow::Shelf shelf = row_->take_shelf(0, tree.item_count);
   kernel_.emit_tree(items_, tree, treelets_[0]);
   row_->put(0, std::move(shelf));

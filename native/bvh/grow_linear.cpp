@@ -7,10 +7,11 @@ namespace komorebi {
 
 WideTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cancel) {
   WideTree wide;
-  MortonOrder order = order_by_morton(items, pool, cancel);
+  TreeRoom room(items);
+  const MortonOrder order = order_by_morton(items, room.leaves(), pool, cancel);
   if (order.count > 0) {
     RunTree top;
-    TreeRoom room(items, pool, [&] { top.cut(order, kRunSize); });
+    room.back(pool, [&] { top.cut(order, kRunSize); });
     const float scale = 1.0f / max_of(order.largest_side, 1e-30f);
     Grove grove(items, static_cast<std::uint32_t>(top.runs.size()), scale, pool, cancel);
     for (std::uint32_t i = 0; i < top.nodes.size(); ++i) {

@@ -32,9 +32,11 @@ struct Part {
 
 class SahBuilder {
  public:
-  SahBuilder(const Items& items, MortonOrder& order, ThreadPool& pool, const Cancel& cancel)
+  SahBuilder(const Items& items, const MortonOrder& order, TreeRoom room, ThreadPool& pool,
+             const Cancel& cancel)
       : items_(items),
         order_(order),
+        room_(std::move(room)),
         pool_(pool),
         cancel_(cancel),
         kernel_(build_kernel()),
@@ -196,12 +198,14 @@ class SahBuilder {
       }
       kernel_.load(items_, strips, count, t);
     };
+    room_.back(pool_, [] {});
     grove_.grow(treelet_count_, load, kernel_.sah_treelet,
-                TreeRoom(items_, pool_, [] {}));
+                std::move(room_));
   }
 
   const Items& items_;
   const MortonOrder& order_;
+  TreeRoom room_;
   ThreadPool& pool_;
   const Cancel& cancel_;
   const BuildKernel& kernel_;
@@ -218,9 +222,10 @@ class SahBuilder {
 }  // namespace
 
 WideTree grow_sah(const Items& items, ThreadPool& pool, const Cancel& cancel) {
-  MortonOrder order = order_by_morton(items, pool, cancel);
+  TreeRoom room(items);
+  const MortonOrder order = order_by_morton(items, room.leaves(), pool, cancel);
   WideTree wide;
-  if (order.count > 0) wide = SahBuilder(items, order, pool, cancel).build();
+  if (order.count > 0) wide = SahBuilder(items, order, std::move(room), pool, cancel).build();
   wide.left_out = order.left_out;
   return wide;
 }

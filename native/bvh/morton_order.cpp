@@ -19,13 +19,6 @@ constexpr std::size_t kPlaces = 256, kInPlace = 4;
 /// Workers take so many parts of the sample.
 constexpr std::size_t kSampleParts = 4;
 
-template <class T>
-Scratch<T> touched(std::size_t count, ThreadPool& pool) {
-  Scratch<T> scratch(count);
-  touch_pages(scratch.data(), count * sizeof(T), pool);
-  return scratch;
-}
-
 /// Asks for what a walk of this stride reads some steps later: each is in a page of its own.
 void fetch_later(const Items& items, std::size_t i, std::size_t stride) {
   constexpr std::size_t kIndicesAhead = 16, kVerticesAhead = 8;
@@ -160,32 +153,39 @@ Scratch<KeyIndex<Key>> sorted_strips(const Items& items,
                                      StripCount (*code)(const Items&, const MortonGrid&,
                                                         std::uint32_t, std::uint32_t,
                                                         KeyIndex<Key>*),
-                                     const MortonGrid& grid, unsigned bits, ThreadPool& pool,
+                                     const MortonGrid& grid, unsigned bits,
+                                     std::span<std::byte> spare, ThreadPool& pool,
                                      const Cancel& cancel, MortonOrder& order) {
   const std::size_t total = items.count();
-  Scratch<KeyIndex<Key>> found = touched<KeyIndex<Key>>(total, pool);
+  Scratch<KeyIndex<Key>> own;
+  if (spare.size() < total * sizeof(KeyIndex<Key>)) own = Scratch<KeyIndex<Key>>(total);
+  KeyIndex<Key>* const found =
+      own.size() > 0 ? own.data() : reinterpret_cast<KeyIndex<Key>*>(spare.data());
+  touch_pages(found, total * sizeof(KeyIndex<Key>), pool);
   std::vector<StripCount> counts((total + kGrain - 1) / kGrain, StripCount{0, 0});
   pool.for_each_chunk(counts.size(), 1, [&](std::size_t chunk, std::size_t) {
     if (cancel.raised()) return;
     const std::size_t begin = chunk * kGrain, end = std::min(total, begin + kGrain);
     counts[chunk] = code(items, grid, static_cast<std::uint32_t>(begin),
-                         static_cast<std::uint32_t>(end), found.data() + begin);
+                         static_cast<std::uint32_t>(end), found + begin);
   });
   check(cancel);
   std::vector<std::span<const KeyIndex<Key>>> pieces;
   for (std::size_t chunk = 0; chunk < counts.size(); ++chunk) {
-    pieces.emplace_back(found.data() + chunk * kGrain, counts[chunk].strips);
+    pieces.emplace_back(found + chunk * kGrain, counts[chunk].strips);
     order.count += counts[chunk].strips;
     order.left_out += counts[chunk].left_out;
   }
-  Scratch<KeyIndex<Key>> sorted = touched<KeyIndex<Key>>(order.count, pool);
+  Scratch<KeyIndex<Key>> sorted(order.count);
+  touch_pages(sorted.data(), order.count * sizeof(KeyIndex<Key>), pool);
   radix_sort(pieces, {sorted.data(), sorted.size()}, pool, cancel, bits);
   return sorted;
 }
 
 }  // namespace
 
-MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& cancel) {
+MortonOrder order_by_morton(const Items& items, std::span<std::byte> spare, ThreadPool& pool,
+                            const Cancel& cancel) {
   MortonOrder order;
   if (items.count() > kMostStrips) throw std::invalid_argument("a tree has too many items");
   const auto [all, sample] = look_over(items, pool, cancel);
@@ -197,9 +197,11 @@ MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& 
 
   const unsigned bits = (grid.wide ? 63u : 30u) + (grid.is_one ? 0u : 1u);
   if (grid.wide) {
-    order.wide = sorted_strips(items, build_kernel().code_63, grid, bits, pool, cancel, order);
+    order.wide =
+        sorted_strips(items, build_kernel().code_63, grid, bits, spare, pool, cancel, order);
   } else {
-    order.narrow = sorted_strips(items, build_kernel().code_30, grid, bits, pool, cancel, order);
+    order.narrow =
+        sorted_strips(items, build_kernel().code_30, grid, bits, spare, pool, cancel, order);
   }
   return order;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "bvh/items.h"
@@ -37,8 +38,10 @@ struct MortonOrder {
   const KeyIndex<std::uint32_t>* narrow_run(Run run, KeyIndex<std::uint32_t>* room) const;
 };
 
+/// @param spare  memory that may be used meanwhile
 /// @throws Cancelled
-MortonOrder order_by_morton(const Items& items, ThreadPool& pool, const Cancel& cancel);
+MortonOrder order_by_morton(const Items& items, std::span<std::byte> spare, ThreadPool& pool,
+                            const Cancel& cancel);
 
 /// Runs of sorted items that share a prefix of their codes, none longer than asked for, and the
 /// radix tree over them (Karras 2012): a node's codes part in the highest bit in which they differ,

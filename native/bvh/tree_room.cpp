@@ -11,27 +11,35 @@ constexpr std::size_t kLeastNodeBytes = 6, kLeastClusterBytes = 16;
 
 }  // namespace
 
-TreeRoom::TreeRoom(const Items& items, ThreadPool& pool, FunctionRef<void()> meanwhile)
+TreeRoom::TreeRoom(const Items& items)
     // Each node but the root has two children at least.
-    : nodes(items.count() + 1) {
-  std::byte* leaves = nullptr;
+    : nodes(items.count() + 1), item_count_(items.count()) {
   if (items.are_triangles()) {
-    clusters = LateArray<std::byte>(items.count() * kLeafBytes + kClusterSlack);
-    leaves = clusters.room();
-    leaves_backed = kLeastClusterBytes * items.count() / kHugePage;
+    clusters = LateArray<std::byte>(item_count_ * kLeafBytes + kClusterSlack);
   } else {
-    box_leaves = LateArray<std::uint32_t>(items.count());
-    leaves = reinterpret_cast<std::byte*>(box_leaves.room());
-    leaves_backed = sizeof(std::uint32_t) * items.count() / kHugePage;
+    box_leaves = LateArray<std::uint32_t>(item_count_);
   }
-  nodes_backed = kLeastNodeBytes * items.count() / kHugePage;
+}
+
+std::span<std::byte> TreeRoom::leaves() {
+  if (clusters.room() != nullptr) return {clusters.room(), item_count_ * kLeafBytes};
+  return std::as_writable_bytes(std::span(box_leaves.room(), item_count_));
+}
+
+void TreeRoom::back(ThreadPool& pool, FunctionRef<void()> meanwhile) {
+  nodes_backed = kLeastNodeBytes * item_count_ / kHugePage;
+  const std::size_t least = clusters.room() != nullptr ? kLeastClusterBytes : sizeof(std::uint32_t);
+  leaves_backed = least * item_count_ / kHugePage;
+  auto* const first_node = reinterpret_cast<volatile std::byte*>(nodes.room());
+  volatile std::byte* const first_leaf = leaves().data();
   pool.for_each_chunk(1 + nodes_backed + leaves_backed, 1, [&](std::size_t i, std::size_t) {
-    if (i == 0) return meanwhile();
-    const std::size_t page = i - 1;
-    std::byte* const at = page < nodes_backed
-                              ? reinterpret_cast<std::byte*>(nodes.room()) + page * kHugePage
-                              : leaves + (page - nodes_backed) * kHugePage;
-    *static_cast<volatile std::byte*>(at) = std::byte{0};
+    if (i == 0) {
+      meanwhile();
+    } else if (i <= nodes_backed) {
+      first_node[(i - 1) * kHugePage] = std::byte{0};
+    } else {
+      first_leaf[(i - 1 - nodes_backed) * kHugePage] = std::byte{0};
+    }
   });
 }
 

@@ -42,7 +42,7 @@ std::vector<std::uint32_t> strips_of(const TriangleMesh& mesh, unsigned threads)
   const Items items{mesh.vtx2xyz, mesh.tri2vtx, {}, {kClusterTriangles, kClusterVertices}};
   ThreadPool pool(threads);
   const Cancel cancel;
-  const MortonOrder order = order_by_morton(items, pool, cancel);
+  const MortonOrder order = order_by_morton(items, {}, pool, cancel);
   std::vector<std::uint32_t> strips(order.count);
   for (std::uint32_t i = 0; i < order.count; ++i) strips[i] = order.strip(i);
   return strips;
