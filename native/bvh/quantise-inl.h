@@ -23,16 +23,31 @@ struct MirrorSigns {
 };
 constexpr MirrorSigns kMirrorSigns;
 
+/// Which planes so many children have, as masks.
+struct UsedPlanes {
+  alignas(64) std::uint32_t of[kWidth + 1][2 * kWidth];
+  constexpr UsedPlanes() : of() {
+    for (int count = 0; count <= kWidth; ++count) {
+      for (int i = 0; i < count; ++i) of[count][i] = of[count][kWidth + i] = ~0u;
+    }
+  }
+};
+constexpr UsedPlanes kUsedPlanes;
+
 /// Where planes go on a grid, as bvh/quantise.cpp has it.
-HWY_INLINE void store_planes(const AxisPlanes& planes, float origin_of_all, float step_of_all,
-                             std::uint8_t* to) {
+HWY_INLINE void store_planes(const AxisPlanes& planes, int count, float origin_of_all,
+                             float step_of_all, std::uint8_t* to) {
   const PlaneTag d;
+  const hn::RebindToUnsigned<PlaneTag> du;
   const auto origin = hn::Set(d, origin_of_all), step = hn::Set(d, step_of_all);
   const auto inverse_step = hn::Set(d, 1.0f / step_of_all);
   for (std::size_t i = 0; i < 2 * kWidth; i += hn::Lanes(d)) {
-    const auto x = hn::Load(d, planes.at + i);
-    const auto signs = hn::Load(hn::RebindToUnsigned<PlaneTag>(), kMirrorSigns.of + i);
+    const auto signs = hn::Load(du, kMirrorSigns.of + i);
     const auto mirrored = [&](auto v) { return hn::Xor(v, hn::BitCast(d, signs)); };
+    // A child that is not there is an empty box.
+    const auto is_used = hn::MaskFromVec(hn::BitCast(d, hn::Load(du, kUsedPlanes.of[count] + i)));
+    const auto x =
+        hn::IfThenElse(is_used, hn::Load(d, planes.at + i), mirrored(hn::Set(d, kFloatMax)));
     const auto place = hn::Mul(hn::Sub(x, origin), inverse_step);
     const auto inside = hn::Min(hn::Max(place, hn::Zero(d)), hn::Set(d, 255.0f));
     auto q = mirrored(hn::Floor(mirrored(inside)));
@@ -70,14 +85,12 @@ HWY_INLINE hn::Vec<hn::RebindToUnsigned<Float4>> grid_exponents(Vector4 lo, Vect
 void quantise_children(const BinaryNode* nodes, const std::uint32_t* children, int count,
                        WideNode& wide) {
   const Float4 d;
-  static constexpr BinaryNode kEmpty{{kFloatMax, kFloatMax, kFloatMax}, 0,
-                                     {kFloatMax, kFloatMax, kFloatMax}, 0};
   AxisPlanes planes[3];
   Vector4 least = hn::Set(d, kFloatMax), minus_most = least;
   for (int i = 0; i < kWidth; i += 4) {
     Vector4 lo[4], minus_hi[4];
     for (int k = 0; k < 4; ++k) {
-      const BinaryNode& child = i + k < count ? nodes[children[i + k]] : kEmpty;
+      const BinaryNode& child = nodes[children[i + k < count ? i + k : count - 1]];
       lo[k] = hn::Load(d, child.lo);
       minus_hi[k] = hn::Load(d, child.minus_hi);
       least = hn::Min(least, lo[k]);
@@ -91,6 +104,9 @@ void quantise_children(const BinaryNode* nodes, const std::uint32_t* children, i
       hn::Store(hn::Neg(minus_upper[axis]), d, planes[axis].at + kWidth + i);
     }
   }
+  // Their spare lanes are bits of integers: as floats so small that they take ages.
+  least = three_lanes(least);
+  minus_most = three_lanes(minus_most);
   alignas(16) float origin[4];
   alignas(16) std::uint32_t exponent[4];
   hn::Store(least, d, origin);
@@ -98,7 +114,7 @@ void quantise_children(const BinaryNode* nodes, const std::uint32_t* children, i
   for (int axis = 0; axis < 3; ++axis) {
     wide.origin[axis] = origin[axis];
     wide.exponent[axis] = static_cast<std::uint8_t>(exponent[axis]);
-    store_planes(planes[axis], origin[axis], wide.step(axis), wide.q[axis][0]);
+    store_planes(planes[axis], count, origin[axis], wide.step(axis), wide.q[axis][0]);
   }
 }
 
