@@ -18,11 +18,17 @@ class VertexReader {
   }
   /// x, y, z and anything.
   HWY_INLINE Vector4 operator()(std::uint32_t vertex) const {
-    const float* at = items_.vtx2xyz.data() + 3 * std::size_t{vertex};
-    return hn::LoadU(Float4(), vertex == last_ ? tail_ : at);
+    return hn::LoadU(Float4(), vertex == last_ ? tail_ : at(vertex));
   }
+  std::uint32_t last() const { return last_; }
+  /// The same of one that is not the last.
+  HWY_INLINE Vector4 inner(std::uint32_t vertex) const { return hn::LoadU(Float4(), at(vertex)); }
 
  private:
+  HWY_INLINE const float* at(std::uint32_t vertex) const {
+    return items_.vtx2xyz.data() + 3 * std::size_t{vertex};
+  }
+
   const Items& items_;
   std::uint32_t last_;
   float tail_[4] = {};
@@ -128,6 +134,16 @@ HWY_INLINE void put_four(const std::uint32_t* corner, Corners4* to) {
   for (int k = 0; k < 4; ++k) hn::Store(hn::Or(hn::LoadU(d, corner + 3 * k), fourth), d, to[k]);
 }
 
+/// To the second cache: what a whole treelet reads has no place in the first.
+template <class T>
+HWY_INLINE void fetch_near(const T* at) {
+#if defined(__GNUC__)
+  __builtin_prefetch(at, 0, 2);
+#else
+  hwy::Prefetch(at);
+#endif
+}
+
 /// Each strip has four triangles, of which the next strip's take the place of what is too much:
 /// how many it has cannot be predicted.
 void load_corners(const Items& items, const KeyIndex<std::uint32_t>* strips, std::uint32_t count,
@@ -147,9 +163,9 @@ void load_corners(const Items& items, const KeyIndex<std::uint32_t>* strips, std
     hwy::Prefetch(far + 3 * kMostInStrip);
     const std::uint32_t near = strip_later(i + kVerticesAhead);
     const std::uint32_t* const next = corners_of(strip_first(near));
-    for (int k = 0; k < 3; ++k) hwy::Prefetch(vertices + 3 * std::size_t{next[k]});
+    for (int k = 0; k < 3; ++k) fetch_near(vertices + 3 * std::size_t{next[k]});
     const std::uint32_t* const last = next + 3 * (near >> kStripShift);
-    for (int k = 0; k < 3; ++k) hwy::Prefetch(vertices + 3 * std::size_t{last[k]});
+    for (int k = 0; k < 3; ++k) fetch_near(vertices + 3 * std::size_t{last[k]});
 
     const std::uint32_t strip = strips[i].index, first = strip_first(strip);
     hn::StoreU(hn::Add(hn::Set(d, first), following), d, t.primitive + at);

@@ -77,13 +77,17 @@ class PackedTreelet {
     for (std::uint32_t i = 0; i < cuts_.count(); ++i) {
       const std::uint32_t end = cuts_.end(i);
       // It is read before it is overwritten: i ≤ begin.
-      t_.nodes[i] = end - begin == 1 ? t_.nodes[begin] : make_node(begin, end);
+      if (end - begin == 1) {
+        t_.nodes[i] = t_.nodes[begin];
+      } else {
+        make_node(begin, end, t_.nodes[i]);
+      }
       begin = end;
     }
     return cuts_.count();
   }
 
-  HWY_INLINE BinaryNode make_node(std::uint32_t begin, std::uint32_t end) {
+  HWY_INLINE void make_node(std::uint32_t begin, std::uint32_t end, BinaryNode& to) {
     const int count = static_cast<int>(end - begin);
     alignas(32) std::int32_t key[kPlanWidth];
     std::uint32_t place[kPlanWidth], child[kPlanWidth];
@@ -115,9 +119,7 @@ class PackedTreelet {
       place_leaf(t_.nodes[child[i]]);
     }
     to_.cost += cuts_.area_of_run(end - 1) * kNodeCost;
-    BinaryNode node;
-    write_node(node, box, staged_++, kInnerBit);
-    return node;
+    write_node(to, box, staged_++, kInnerBit);
   }
 
   HWY_INLINE void place_leaf(const BinaryNode& leaf) {

@@ -98,6 +98,25 @@ class StripBlock {
 
   /// Vertices of all corners, an axis a row.
   HWY_INLINE void load(const std::uint32_t* corners, const VertexReader& vertex) {
+    const BlockIndexTag du;
+    auto highest = hn::Zero(du);
+    for (std::uint32_t i = 0; i < kBlock; i += kLanes) {
+      BlockIndices corner[3];
+      hn::LoadInterleaved3(du, corners + 3 * std::size_t{i}, corner[0], corner[1], corner[2]);
+      for (int k = 0; k < 3; ++k) {
+        hn::Store(corner[k], du, corner_[k] + i);
+        highest = hn::Max(highest, corner[k]);
+      }
+    }
+    if (HWY_LIKELY(hn::AllTrue(du, hn::Lt(highest, hn::Set(du, vertex.last()))))) {
+      load_vertices(corners, [&](std::uint32_t k) { return vertex.inner(k); });
+    } else {
+      load_vertices(corners, vertex);
+    }
+  }
+
+  template <class Vertex>
+  HWY_INLINE void load_vertices(const std::uint32_t* corners, const Vertex& vertex) {
     const Float4 d;
     for (std::uint32_t i = 0; i < kBlock; i += 4) {
       const std::uint32_t* const corner = corners + 3 * std::size_t{i};
@@ -107,12 +126,6 @@ class StripBlock {
                   vertex(corner[9 + k]), xyz);
         for (int axis = 0; axis < 3; ++axis) hn::Store(xyz[axis], d, at_[k][axis] + i);
       }
-    }
-    const BlockIndexTag du;
-    for (std::uint32_t i = 0; i < kBlock; i += kLanes) {
-      BlockIndices corner[3];
-      hn::LoadInterleaved3(du, corners + 3 * std::size_t{i}, corner[0], corner[1], corner[2]);
-      for (int k = 0; k < 3; ++k) hn::Store(corner[k], du, corner_[k] + i);
     }
   }
 
