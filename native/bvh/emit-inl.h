@@ -92,16 +92,13 @@ struct LeafItems {
 /// Leaves of a treelet.
 struct TreeletLeaves {
   const Treelet& t;
+  const bool have_corners;
   HWY_INLINE void get(const BinaryNode& leaf, LeafItems& to) const {
-    const hn::FixedTag<std::uint32_t, 4> d;
     to.firsts = t.moved[leaf.first];
-    for (std::uint32_t i = leaf.first, at = 0; at < leaf.leaf_count(); ++i) {
-      const std::uint32_t start = t.start[t.ids[i]], end = start + t.triangles[t.ids[i]];
-      for (std::uint32_t k = start; k < end; ++k, ++at) {
-        hn::Store(hn::Load(d, t.corner[k]), d, to.corner[at]);
-        to.primitive[at] = t.primitive[k];
-      }
-    }
+    for_each_of_leaf(t, leaf.first, leaf.leaf_count(), [&](std::uint32_t i, std::uint32_t k) {
+      to.primitive[k] = t.primitive[i];
+      if (have_corners) copy_corners(t.corner[i], to.corner[k]);
+    });
   }
 };
 
@@ -199,7 +196,7 @@ class Emitter {
 void sah_treelet(const Items& items, float scale, Treelet& t, WideTreelet& to) {
   SahTreelet(items.leaf, scale, t).build();
   plan(scale, t);
-  TreeletLeaves leaves{t};
+  TreeletLeaves leaves{t, items.are_triangles()};
   Emitter<TreeletLeaves>(items, t.nodes, leaves, to).emit();
   to.cost = t.cost[0].at[to.room - 1];
 }

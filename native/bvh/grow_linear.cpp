@@ -12,8 +12,7 @@ WideTree grow_linear(const Items& items, ThreadPool& pool, const Cancel& cancel)
   if (order.count > 0) {
     RunTree top;
     room.back(pool, [&] { top.cut(order, kRunSize); });
-    const float scale = 1.0f / max_of(order.largest_side, 1e-30f);
-    Grove grove(items, static_cast<std::uint32_t>(top.runs.size()), scale, pool, cancel);
+    Grove grove(items, static_cast<std::uint32_t>(top.runs.size()), order.scale(), pool, cancel);
     for (std::uint32_t i = 0; i < top.nodes.size(); ++i) {
       const RunTree::Node& node = top.nodes[i];
       if (node.is_run) {

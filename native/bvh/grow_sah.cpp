@@ -40,7 +40,7 @@ class SahBuilder {
         pool_(pool),
         cancel_(cancel),
         kernel_(build_kernel()),
-        scale_(1.0f / max_of(order.largest_side, 1e-30f)),
+        scale_(order.scale()),
         grove_(items, order.count, scale_, pool, cancel),
         moved_(order.count) {
     // About so many clusters there will be.

@@ -48,7 +48,7 @@ class LeafCorners {
     std::uint32_t count = 0;
     for (std::uint32_t v = 0; v < kVectors; ++v, firsts >>= kLanes) {
       const std::uint32_t here = firsts & kAllLanes;
-      hn::StoreU(hn::Compress(lanes_[v], mask_from(here)), Tag(), to + count);
+      hn::StoreU(hn::Compress(lanes_[v], mask_of(Tag(), here)), Tag(), to + count);
       count += static_cast<std::uint32_t>(std::popcount(here));
     }
     for (std::uint32_t k = 0; k < kClusterVertices; k += kLanes) {
@@ -84,7 +84,6 @@ class LeafCorners {
  private:
   using Tag = hn::CappedTag<std::uint32_t, 16>;
   using Indices = hn::Vec<Tag>;
-  static constexpr std::uint32_t kLanes = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
   static constexpr std::uint32_t kVectors = 32 / kLanes;
 
   /// The corners that have this vertex; what is behind the last triangle comes last.
@@ -92,41 +91,28 @@ class LeafCorners {
     const auto wanted = hn::Set(Tag(), vertex);
     std::uint32_t bits = 0;
     for (std::uint32_t v = 0; v < kVectors; ++v) {
-      bits |= mask_bits(hn::Eq(lanes_[v], wanted)) << (v * kLanes);
+      bits |= bits_of(Tag(), hn::Eq(lanes_[v], wanted)) << (v * kLanes);
     }
     return bits;
   }
-  static constexpr std::uint32_t kAllLanes = (1u << kLanes) - 1;
-  static HWY_INLINE hn::Mask<Tag> mask_from(std::uint32_t bits) {
-    std::uint8_t bytes[8];
-    const std::uint64_t all = bits;
-    std::memcpy(bytes, &all, 8);
-    return hn::LoadMaskBits(Tag(), bytes);
-  }
-  static HWY_INLINE std::uint32_t mask_bits(hn::Mask<Tag> mask) {
-    std::uint8_t bytes[8];
-    hn::StoreMaskBits(Tag(), mask, bytes);
-    if constexpr (kLanes < 16) return bytes[0];
-    std::uint16_t bits;
-    std::memcpy(&bits, bytes, 2);
-    return bits;
-  }
-
   const std::uint32_t* corner_;
   Indices lanes_[kVectors];
 };
 
-/// Of the items at positions [begin, end): corners of all their triangles, at most eight.
-HWY_INLINE void take_corners(const Treelet& t, std::uint32_t begin, std::uint32_t end,
-                             Corners4* corner) {
-  const hn::FixedTag<std::uint32_t, 4> d;
-  std::uint32_t count = 0;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const std::uint32_t id = t.ids[i];
-    for (std::uint32_t k = 0; k < t.triangles[id]; ++k) {
-      hn::Store(hn::Load(d, t.corner[t.start[id] + k]), d, corner[count++]);
-    }
+/// Calls body(triangle, k) for the first, k = 0, … of the triangles of the items at positions
+/// `begin` and on.
+template <class Body>
+HWY_INLINE void for_each_of_leaf(const Treelet& t, std::uint32_t begin, std::uint32_t count,
+                                 const Body& body) {
+  for (std::uint32_t i = begin, k = 0; k < count; ++i) {
+    const std::uint32_t first = t.start[t.ids[i]], end = first + t.triangles[t.ids[i]];
+    for (std::uint32_t triangle = first; triangle < end; ++triangle) body(triangle, k++);
   }
+}
+
+HWY_INLINE void copy_corners(const Corners4& from, Corners4& to) {
+  const hn::FixedTag<std::uint32_t, 4> d;
+  hn::Store(hn::Load(d, from), d, to);
 }
 
 /// BinaryNode::info of a leaf over so many triangles at positions [begin, end), or 0 if that would
@@ -144,7 +130,9 @@ HWY_INLINE std::uint32_t leaf_info(Treelet& t, std::uint32_t begin, std::uint32_
   // Different bits are different vertices: most sets with too many are seen here.
   if (static_cast<std::uint32_t>(std::popcount(seen)) > limit.vertices) return 0;
   alignas(64) Corners4 corner[kClusterTriangles];
-  take_corners(t, begin, end, corner);
+  for_each_of_leaf(t, begin, triangles, [&](std::uint32_t triangle, std::uint32_t k) {
+    copy_corners(t.corner[triangle], corner[k]);
+  });
   const std::uint32_t firsts = LeafCorners(corner).firsts(triangles);
   const auto vertices = static_cast<std::uint32_t>(std::popcount(firsts));
   t.moved[begin] = firsts;
@@ -172,6 +160,7 @@ HWY_INLINE WrittenLeaf write_cluster(const VertexReader& vertex, std::uint32_t c
   const std::size_t start = ClusterView::coordinates_offset(count);
   record[0] = static_cast<std::byte>(count);
   record[1] = static_cast<std::byte>(vertices);
+  std::memset(record + 16, 0, 4);  // behind eight triangles' corners two bytes are unused
   corners.store(index, count, record + 2);
   // Each row of coordinates is written as a whole; what is too much the next one overwrites.
   const Float4 d;

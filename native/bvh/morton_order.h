@@ -28,6 +28,9 @@ struct MortonOrder {
   float sample_area = 0.0f;    ///< median half area of the boxes looked at
   float largest_side = 0.0f;   ///< of everything
 
+  /// Areas are measured in units of 1 / scale².
+  float scale() const { return 1.0f / max_of(largest_side, 1e-30f); }
+
   std::uint64_t code(std::size_t i) const { return wide.size() > 0 ? wide[i].key : narrow[i].key; }
   std::uint32_t strip(std::size_t i) const {
     return wide.size() > 0 ? wide[i].index : narrow[i].index;

@@ -8,6 +8,27 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// Numbers in a vector of up to sixteen.
+constexpr std::uint32_t kLanes = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
+constexpr std::uint32_t kAllLanes = (1u << kLanes) - 1;
+
+/// One bit for each lane of such a vector.
+template <class D>
+HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  std::uint32_t bits;
+  std::memcpy(&bits, bytes, 4);
+  return bits & kAllLanes;
+}
+/// Other bits than those of lanes are not looked at.
+template <class D>
+HWY_INLINE hn::Mask<D> mask_of(D d, std::uint64_t bits) {
+  std::uint8_t bytes[8];
+  std::memcpy(bytes, &bits, 8);
+  return hn::LoadMaskBits(d, bytes);
+}
+
 using Float4 = hn::FixedTag<float, 4>;
 using Vector4 = hn::Vec<Float4>;
 

@@ -125,7 +125,6 @@ class RunCuts {
     }
   }
 
-  static constexpr std::uint32_t kLanes = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
   float side_[6][kRoom];
   float area_[kWidth][kRoom];  ///< of the run of k + 1 boxes that ends at each
   float cost_[kRoom];

@@ -48,7 +48,6 @@ class LeafLengths {
   static constexpr std::uint32_t kPart = 256;
   static constexpr std::uint32_t kBefore = kClusterTriangles;  ///< more than a leaf looks back
   static constexpr std::uint32_t kRoom = kPart + 2 * kBefore + kBehindDesk;
-  static constexpr std::uint32_t kLanes = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
 
   /// Where codes part most, of each place and those kLeafSlack before it; the later one of equals.
   void find_cuts(const Treelet& t) {
@@ -58,9 +57,7 @@ class LeafLengths {
       const auto jump = hn::Xor(hn::LoadU(d, t.code + i - 1), hn::LoadU(d, t.code + i));
       hn::StoreU(jump, d, jump_ + i);
     }
-    alignas(64) static constexpr std::uint32_t kNumbers[16] = {0, 1, 2,  3,  4,  5,  6,  7,
-                                                               8, 9, 10, 11, 12, 13, 14, 15};
-    const auto numbers = hn::Load(d, kNumbers);
+    const auto numbers = hn::Iota(d, 0);
     for (std::uint32_t i = kLeafSlack; i < t.triangle_count; i += kLanes) {
       auto best = hn::Add(hn::Set(d, i), numbers), highest = hn::LoadU(d, jump_ + i);
       auto end = best;

@@ -58,8 +58,7 @@ static_assert(kIndicesAhead <= kFetchedAhead);
 template <bool kWithCodes>
 void list_triangles(const KeyIndex<std::uint32_t>* strips, std::uint32_t count, Treelet& t) {
   const hn::FixedTag<std::uint32_t, kMostInStrip> d;
-  alignas(16) static constexpr std::uint32_t kFollowing[kMostInStrip] = {0, 1, 2, 3};
-  const auto following = hn::Load(d, kFollowing);
+  const auto following = hn::Iota(d, 0);
   std::uint32_t at = 0, begin = 0, items = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t key = strips[i].key, strip = strips[i].index;

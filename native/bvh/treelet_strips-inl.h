@@ -26,20 +26,6 @@ HWY_INLINE BlockIndices spread_bits(BlockIndices x) {
   return hn::And(hn::Or(x, hn::ShiftLeft<2>(x)), hn::Set(d, 0x09249249u));
 }
 
-HWY_INLINE std::uint64_t bits_of(hn::Mask<BlockTag> mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(BlockTag(), mask, bytes);
-  std::uint64_t bits;
-  std::memcpy(&bits, bytes, 8);
-  return bits & ((std::uint64_t{1} << hn::Lanes(BlockTag())) - 1);
-}
-
-HWY_INLINE hn::Mask<BlockTag> mask_of(std::uint64_t bits) {
-  std::uint8_t bytes[8];
-  std::memcpy(bytes, &bits, 8);
-  return hn::LoadMaskBits(BlockTag(), bytes);
-}
-
 /// Of neighbours i and i + 1 that may become one (bit i) those that do: every other one of a run.
 HWY_INLINE std::uint64_t every_other(std::uint64_t bits) {
   constexpr std::uint64_t kEven = 0x5555555555555555u;
@@ -94,7 +80,6 @@ class StripBlock {
   }
 
  private:
-  static constexpr std::uint32_t kLanes = HWY_MAX_BYTES >= 64 ? 16 : HWY_MAX_BYTES >= 32 ? 8 : 4;
 
   /// Vertices of all corners, an axis a row.
   HWY_INLINE void load(const std::uint32_t* corners, const VertexReader& vertex) {
@@ -150,7 +135,7 @@ class StripBlock {
       const auto error = hn::Add(hn::Mul(most, hn::Set(d, 1e-5f)), hn::Set(d, 1e-30f));
       has_area = hn::Or(has_area, hn::Gt(hn::Abs(hn::Sub(p, q)), error));
     }
-    return bits_of(hn::Not(has_area));
+    return bits_of(d, hn::Not(has_area));
   }
 
   HWY_INLINE static BlockLanes area(const BlockLanes* box, BlockLanes scale) {
@@ -187,7 +172,7 @@ class StripBlock {
       const auto most =
           hn::Add(hn::Max(one, other), hn::Mul(hn::Min(one, other), hn::Set(d, kOfSmaller)));
       const auto fits = hn::And(hn::Le(both, most), hn::Le(both, hn::Set(d, kLargestStrip)));
-      small |= bits_of(fits) << i;
+      small |= std::uint64_t{bits_of(d, fits)} << i;
     }
     return small;
   }
@@ -207,7 +192,7 @@ class StripBlock {
       }
       // −1 was subtracted for each.
       const auto two = hn::Gt(equal, hn::Set(d, 1u));
-      common |= bits_of(hn::RebindMask(BlockTag(), two)) << i;
+      common |= std::uint64_t{bits_of(d, two)} << i;
     }
     return common;
   }
@@ -223,7 +208,7 @@ class StripBlock {
       // Two triangles without a common edge could have six vertices.
       const auto is_pair = hn::Gt(hn::Or(own, next), hn::Set(d, strip_first(~0u)));
       const auto fits = hn::And(is_pair, hn::Eq(gap, hn::Zero(d)));
-      near |= bits_of(hn::RebindMask(BlockTag(), fits)) << i;
+      near |= std::uint64_t{bits_of(d, fits)} << i;
     }
     return near;
   }
@@ -235,7 +220,7 @@ class StripBlock {
     const std::uint64_t stay = kept & ~(joined << 1);
     std::uint32_t to = 0;
     for (std::uint32_t i = 0; i < count; i += kLanes) {
-      const auto is_joined = mask_of(joined >> i), stays = mask_of(stay >> i);
+      const auto is_joined = mask_of(d, joined >> i), stays = mask_of(d, stay >> i);
       for (float(*const rows)[kBlock + kBehindBlock] : {lo, minus_hi}) {
         for (int axis = 0; axis < 3; ++axis) {
           const auto own = hn::Load(d, rows[axis] + i), next = hn::LoadU(d, rows[axis] + i + 1);
@@ -249,8 +234,7 @@ class StripBlock {
           hn::Add(hn::ShiftLeft<kStripShift>(hn::ShiftRight<kStripShift>(next)), one);
       const auto both = hn::IfThenElse(hn::RebindMask(du, is_joined), hn::Add(own, others), own);
       hn::CompressStore(both, hn::RebindMask(du, stays), du, strip + to);
-      const std::uint64_t lanes = (std::uint64_t{1} << kLanes) - 1;
-      to += static_cast<std::uint32_t>(std::popcount(stay >> i & lanes));
+      to += static_cast<std::uint32_t>(std::popcount(stay >> i & kAllLanes));
     }
     count = to;
   }
@@ -267,8 +251,7 @@ HWY_INLINE void code_block(const StripBlock& block, const CellGrid& grid,
   const BlockTag d;
   const BlockIndexTag du;
   const auto half = hn::Set(d, 0.5f);
-  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
-  for (std::uint32_t i = 0; i < block.count; i += lanes) {
+  for (std::uint32_t i = 0; i < block.count; i += kLanes) {
     auto code = hn::Zero(du);
     for (int axis = 0; axis < 3; ++axis) {
       const auto centre = hn::Sub(hn::Mul(hn::Load(d, block.lo[axis] + i), half),
@@ -282,7 +265,7 @@ HWY_INLINE void code_block(const StripBlock& block, const CellGrid& grid,
     }
     alignas(64) std::uint32_t codes[16];
     hn::Store(code, du, codes);
-    for (std::uint32_t k = 0; k < lanes && i + k < block.count; ++k) {
+    for (std::uint32_t k = 0; k < kLanes && i + k < block.count; ++k) {
       out[i + k] = {codes[k], block.strip[i + k]};
     }
   }

@@ -97,6 +97,22 @@ TEST(Builders, GiveTheSameBytesForAnyNumberOfThreads) {
   }
 }
 
+TEST(Builders, LeaveNoByteOfAFullLeafUnwritten) {
+  // An octahedron is one leaf of eight triangles, whose memory other builds have written to.
+  TriangleMesh mesh;
+  mesh.vtx2xyz = {1, 0, 0, 0, 1, 0, 0, 0, 1, -1, 0, 0, 0, -1, 0, 0, 0, -1};
+  mesh.tri2vtx = {0, 1, 2, 1, 3, 2, 3, 4, 2, 4, 0, 2, 1, 0, 5, 3, 1, 5, 4, 3, 5, 0, 4, 5};
+  for (const Builder builder : kFast) {
+    release_scratch();
+    const MeshTree first = build(mesh, builder);
+    EXPECT_EQ(ClusterView(first.clusters.data()).triangle_count(), 8u);
+    for (const float size : {0.05f, 0.1f, 0.2f}) {
+      build(random_triangles(20000, size), builder);
+      expect_same_bytes(first, build(mesh, builder));
+    }
+  }
+}
+
 TEST(Builders, GiveTheSameBytesOnEveryInstructionSet) {
   KOMOREBI_SHARED_FILE(bunny, "data/meshes/bunny_hr.obj");
   const std::string best = active_instruction_set();
