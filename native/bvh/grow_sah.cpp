@@ -199,8 +199,7 @@ class SahBuilder {
       kernel_.load(items_, strips, count, t);
     };
     room_.back(pool_, [] {});
-    grove_.grow(treelet_count_, load, kernel_.sah_treelet,
-                std::move(room_));
+    grove_.grow(treelet_count_, load, kernel_.sah_treelet, std::move(room_));
   }
 
   const Items& items_;

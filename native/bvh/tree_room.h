@@ -13,8 +13,8 @@ namespace komorebi {
 /// Memory for a wide tree in the making, as much as it may get: at first address space alone.
 struct TreeRoom {
   LateArray<WideNode> nodes;
-  LateArray<std::byte> clusters;        ///< of triangles…
-  LateArray<std::uint32_t> box_leaves;  ///< …or of instances
+  LateArray<std::byte> clusters;                    ///< of triangles…
+  LateArray<std::uint32_t> box_leaves;              ///< …or of instances
   std::size_t nodes_backed = 0, leaves_backed = 0;  ///< huge pages
 
   explicit TreeRoom(const Items& items);

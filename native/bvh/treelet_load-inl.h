@@ -154,7 +154,9 @@ void load_corners(const Items& items, const KeyIndex<std::uint32_t>* strips, std
   const float* const vertices = items.vtx2xyz.data();
   const std::uint32_t last_whole = static_cast<std::uint32_t>(items.count()) - kMostInStrip - 1;
   const auto strip_later = [&](std::uint32_t i) { return strips[i < count ? i : count - 1].index; };
-  const auto corners_of = [&](std::uint32_t triangle) { return corners + 3 * std::size_t{triangle}; };
+  const auto corners_of = [&](std::uint32_t triangle) {
+    return corners + 3 * std::size_t{triangle};
+  };
   std::uint32_t at = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t* const far = corners_of(strip_first(strip_later(i + kIndicesAhead)));

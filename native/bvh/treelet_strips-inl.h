@@ -80,7 +80,6 @@ class StripBlock {
   }
 
  private:
-
   /// Vertices of all corners, an axis a row.
   HWY_INLINE void load(const std::uint32_t* corners, const VertexReader& vertex) {
     const BlockIndexTag du;

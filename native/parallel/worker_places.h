@@ -35,7 +35,7 @@ class WorkerPlaces {
  private:
   struct Worker {
     std::atomic<bool> is_asleep{false};
-    std::atomic<int> last{-1};  ///< processor that it took
+    std::atomic<int> last{-1};       ///< processor that it took
     std::atomic<int> kept_from{-1};  ///< one that it is to be allowed again
   };
   int claim(unsigned run);

@@ -38,7 +38,8 @@ void expect_sorted_as_std(const std::vector<Key>& keys) {
     }
     radix_sort(pieces, sorted, pool, cancel);
     for (std::size_t i = 0; i < expected.size(); ++i) {
-      ASSERT_EQ(sorted[i].key, expected[i].key) << "position " << i << ", " << threads << " threads";
+      ASSERT_EQ(sorted[i].key, expected[i].key)
+          << "position " << i << ", " << threads << " threads";
       ASSERT_EQ(sorted[i].index, expected[i].index) << "position " << i;
     }
   }
