@@ -6,8 +6,9 @@
 // their place, and loses where Morton cells cut). Below, what has become small enough for a
 // worker's nearest caches is split item by item: a strip (bvh/strip.h), or two neighbours on the
 // curve that fill hardly more room than one.
-#include <condition_variable>
+#include <atomic>
 #include <mutex>
+#include <thread>
 
 #include "bvh/grove.h"
 #include "bvh/morton_order.h"
@@ -105,34 +106,42 @@ class SahBuilder {
 
   Clusters clusters() { return {cluster_.data(), moved_.data()}; }
 
+  /// Counts down, whichever way a part ends.
+  struct AtEnd {
+    std::atomic<std::size_t>& count;
+    ~AtEnd() { --count; }
+  };
+
   /// Large ranges wait in a list from which whoever is free takes one.
   void split_top() {
     treelets_ = Scratch<ClusterRange>(cluster_count_);
     std::vector<Part> waiting{{0, 0, all_}};
     waiting.reserve(2 * std::size_t{cluster_count_} / kSmallRange + 2);
-    std::mutex mutex;
-    std::condition_variable changed;
-    unsigned busy = 0;
+    std::mutex mutex;  // guards `waiting`
+    // Of parts that wait or are being split: when there are none, all are.
+    std::atomic<std::size_t> unfinished{1};
+    std::atomic<std::size_t> there{1};  // that wait
     const auto hand_over = [&](const Part& part) {
-      {
-        const std::lock_guard lock(mutex);
-        waiting.push_back(part);
-      }
-      changed.notify_one();
+      const std::lock_guard lock(mutex);
+      waiting.push_back(part);
+      ++unfinished;
+      ++there;
     };
     pool_.run(pool_.size(), [&](unsigned) {
-      std::unique_lock lock(mutex);
-      while (true) {
-        changed.wait(lock, [&] { return !waiting.empty() || busy == 0; });
-        if (waiting.empty()) return;
+      while (unfinished > 0) {
+        // Who slept here would be woken late, and where the one runs that wakes it.
+        if (there == 0) {
+          std::this_thread::yield();
+          continue;
+        }
+        std::unique_lock lock(mutex);
+        if (waiting.empty()) continue;
         const Part part = waiting.back();
         waiting.pop_back();
-        ++busy;
+        --there;
         lock.unlock();
+        const AtEnd done{unfinished};
         split(part, hand_over);
-        lock.lock();
-        --busy;
-        if (busy == 0) changed.notify_all();
       }
     });
     check(cancel_);

@@ -83,6 +83,16 @@ HWY_INLINE Lanes instance_box(const Aabb& box) {
   return make_box(hn::Load(Float4(), lo), hn::Load(Float4(), minus_hi));
 }
 
+/// To the second cache: what a whole treelet reads has no place in the first.
+template <class T>
+HWY_INLINE void fetch_near(const T* at) {
+#if defined(__GNUC__)
+  __builtin_prefetch(at, 0, 2);
+#else
+  hwy::Prefetch(at);
+#endif
+}
+
 /// Calls body(i, corner) for the desk's triangles, having asked for what it reads.
 template <class Body>
 HWY_INLINE void for_each_triangle(const Items& items, const Treelet& t, const Body& body) {
@@ -92,7 +102,7 @@ HWY_INLINE void for_each_triangle(const Items& items, const Treelet& t, const Bo
   for (std::uint32_t i = 0; i < t.triangle_count; ++i) {
     hwy::Prefetch(corners(i + kIndicesAhead));
     const std::uint32_t* const later = corners(i + kVerticesAhead);
-    for (int k = 0; k < 3; ++k) hwy::Prefetch(&items.vtx2xyz[3 * std::size_t{later[k]}]);
+    for (int k = 0; k < 3; ++k) fetch_near(&items.vtx2xyz[3 * std::size_t{later[k]}]);
     body(i, corners(i));
   }
 }
@@ -131,16 +141,6 @@ HWY_INLINE void put_four(const std::uint32_t* corner, Corners4* to) {
   alignas(16) static constexpr std::uint32_t kFourth[4] = {0, 0, 0, kNone};
   const auto fourth = hn::Load(d, kFourth);
   for (int k = 0; k < 4; ++k) hn::Store(hn::Or(hn::LoadU(d, corner + 3 * k), fourth), d, to[k]);
-}
-
-/// To the second cache: what a whole treelet reads has no place in the first.
-template <class T>
-HWY_INLINE void fetch_near(const T* at) {
-#if defined(__GNUC__)
-  __builtin_prefetch(at, 0, 2);
-#else
-  hwy::Prefetch(at);
-#endif
 }
 
 /// Each strip has four triangles, of which the next strip's take the place of what is too much:
