@@ -49,40 +49,22 @@ std::vector<Aabb> sample_part(const Items& items, std::size_t part) {
   return boxes;
 }
 
-/// Bounds of some points, by fours: each minimum would wait for the one before it.
-Aabb extent_of_points(const float* xyz, std::size_t count) {
-  constexpr std::size_t kFour = 12;  // numbers
-  float lo[kFour], hi[kFour];
-  std::fill_n(lo, kFour, kFloatMax);
-  std::fill_n(hi, kFour, -kFloatMax);
-  std::size_t i = 0;
-  for (; i + kFour <= 3 * count; i += kFour) {
-    for (std::size_t k = 0; k < kFour; ++k) {
-      lo[k] = min_of(lo[k], xyz[i + k]);
-      hi[k] = max_of(hi[k], xyz[i + k]);
-    }
-  }
-  for (std::size_t k = 0; i + k < 3 * count; ++k) {
-    lo[k] = min_of(lo[k], xyz[i + k]);
-    hi[k] = max_of(hi[k], xyz[i + k]);
-  }
-  Aabb bounds;
-  for (std::size_t k = 0; k < kFour; ++k) {
-    const int axis = static_cast<int>(k % 3);
-    bounds.lo[axis] = min_of(bounds.lo[axis], lo[k]);
-    bounds.hi[axis] = max_of(bounds.hi[axis], hi[k]);
-  }
-  return bounds;
-}
-
 /// Bounds of some vertices, or of some boxes.
 Aabb extent(const Items& items, std::size_t begin, std::size_t end) {
-  if (items.are_triangles()) {
-    return extent_of_points(items.vtx2xyz.data() + 3 * begin, end - begin);
-  }
   Aabb part;
-  for (std::size_t i = begin; i < end; ++i) {
-    if (!items.boxes[i].is_empty()) part = united(part, items.boxes[i]);
+  if (items.are_triangles()) {
+    const float* xyz = items.vtx2xyz.data();
+    for (std::size_t i = begin; i < end; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const float x = xyz[3 * i + static_cast<std::size_t>(axis)];
+        part.lo[axis] = min_of(part.lo[axis], x);
+        part.hi[axis] = max_of(part.hi[axis], x);
+      }
+    }
+  } else {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!items.boxes[i].is_empty()) part = united(part, items.boxes[i]);
+    }
   }
   return part;
 }
