@@ -1,7 +1,7 @@
 #include "bvh/tree_room.h"
 
 #include "bvh/treelet.h"
-#include "parallel/pages.h"
+#include "parallel/first_touch.h"
 
 namespace komorebi {
 namespace {
@@ -30,15 +30,14 @@ void TreeRoom::back(ThreadPool& pool, FunctionRef<void()> meanwhile) {
   nodes_backed = kLeastNodeBytes * item_count_ / kHugePage;
   const std::size_t least = clusters.room() != nullptr ? kLeastClusterBytes : sizeof(std::uint32_t);
   leaves_backed = least * item_count_ / kHugePage;
-  auto* const first_node = reinterpret_cast<volatile std::byte*>(nodes.room());
-  volatile std::byte* const first_leaf = leaves().data();
+  void* const leaf_room = leaves().data();
   pool.for_each_chunk(1 + nodes_backed + leaves_backed, 1, [&](std::size_t i, std::size_t) {
     if (i == 0) {
       meanwhile();
     } else if (i <= nodes_backed) {
-      first_node[(i - 1) * kHugePage] = std::byte{0};
+      touch_page(nodes.room(), i - 1);
     } else {
-      first_leaf[(i - 1 - nodes_backed) * kHugePage] = std::byte{0};
+      touch_page(leaf_room, i - 1 - nodes_backed);
     }
   });
 }

@@ -152,7 +152,7 @@ void load_corners(const Items& items, const KeyIndex<std::uint32_t>* strips, std
   const auto following = hn::Iota(d, 0);
   const std::uint32_t* const corners = items.tri2vtx.data();
   const float* const vertices = items.vtx2xyz.data();
-  const std::uint32_t last_whole = static_cast<std::uint32_t>(items.count()) - kMostInStrip - 1;
+  const std::size_t triangles = items.count();
   const auto strip_later = [&](std::uint32_t i) { return strips[i < count ? i : count - 1].index; };
   const auto corners_of = [&](std::uint32_t triangle) {
     return corners + 3 * std::size_t{triangle};
@@ -171,7 +171,8 @@ void load_corners(const Items& items, const KeyIndex<std::uint32_t>* strips, std
     const std::uint32_t strip = strips[i].index, first = strip_first(strip);
     hn::StoreU(hn::Add(hn::Set(d, first), following), d, t.primitive + at);
     hn::StoreU(hn::Set(d, strips[i].key), d, t.code + at);
-    if (HWY_LIKELY(static_cast<std::int32_t>(first) < static_cast<std::int32_t>(last_whole))) {
+    // One number is read behind the last corner.
+    if (HWY_LIKELY(first + kMostInStrip < triangles)) {
       put_four(corners_of(first), t.corner + at);
     } else {
       std::uint32_t end[3 * kMostInStrip + 1] = {};

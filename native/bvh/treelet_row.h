@@ -50,10 +50,7 @@ class TreeletRow {
   void keep_roots(WideTreelet& treelet);
   void find_places(std::vector<Done>& ready);
   void move_in(const WideTreelet& treelet);
-  std::byte* leaf_room() {
-    return items_.are_triangles() ? room_.clusters.room()
-                                  : reinterpret_cast<std::byte*>(room_.box_leaves.room());
-  }
+  std::byte* leaf_room() { return room_.leaves().data(); }
 
   const Items& items_;
   std::span<WideTreelet> treelets_;
