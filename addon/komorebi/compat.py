@@ -15,7 +15,14 @@ VERSION: tuple[int, int, int] = bpy.app.version
 
 FLAT_RECTS = VERSION >= (4, 1, 0)  # rect.foreach_set wants one dimension instead of two
 GENERIC_ATTRIBUTES = VERSION >= (3, 6, 0)  # position, .corner_vert, sharp_face are attributes
+LONG_PASS_NAMES = VERSION >= (5, 0, 0)  # "Material Index", not "IndexMA"
 CORNER_NORMALS = VERSION >= (4, 1, 0)  # mesh.corner_normals, no auto smooth
+
+
+def cycles_or(block: Any, otherwise: Any) -> Any:
+    """Cycles' settings of a data-block, which artists have made; without Cycles, `otherwise`."""
+    settings = getattr(block, "cycles", None)
+    return otherwise if settings is None else settings
 
 
 def set_rect(render_pass: Any, pixels: FloatArray) -> None:
@@ -137,6 +144,19 @@ def face_materials(mesh: Any) -> IntArray | None:
     result = np.empty(len(mesh.polygons), np.int32)
     attribute.data.foreach_get("value", result)
     return result if result.any() else None
+
+
+def corner_uvs(mesh: Any) -> FloatArray | None:
+    """The UV map that is used for renders [corners, 2]; None: there is none."""
+    layer = next((layer for layer in mesh.uv_layers if layer.active_render), None)
+    if layer is None:
+        return None
+    result = np.empty(len(mesh.loops) * 2, np.float32)
+    if hasattr(layer, "uv"):  # from 3.5
+        layer.uv.foreach_get("vector", result)
+    else:
+        layer.data.foreach_get("uv", result)
+    return result.reshape(-1, 2)
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import bpy
 
-from . import background, core, dump, jobs, native_scene, reporting
+from . import background, core, dump, jobs, metadata, native_scene, reporting
 from .denoise import library as oidn
 from .denoise import run as denoise
 from .errors import RenderCancelled, RenderError
@@ -17,7 +17,7 @@ from .export.camera import export_camera
 from .export.names import name_of
 from .export.settings import export_settings
 from .framing import Region, render_region
-from .passes import Pass, enabled_passes
+from .passes import Pass, enabled_cryptomattes, enabled_passes
 from .progress import Progress
 from .result import ResultWriter
 from .scene_data import CameraData, FloatArray, SceneData
@@ -47,6 +47,7 @@ class Frame:
     oidn: str  # the library to denoise with; "": the picture stays as it is
     scene: SceneData
     views: list[View]
+    mattes: dict[str, list[str]]  # names in each Cryptomatte
 
 
 def export_frame(engine: Any, depsgraph: Any) -> Frame | None:
@@ -61,12 +62,31 @@ def export_frame(engine: Any, depsgraph: Any) -> Frame | None:
     if region[0] >= region[2] or region[1] >= region[3]:
         raise RenderError("The render border holds no pixel")
     passes = enabled_passes(scene, depsgraph.view_layer)
+    _warn_missing(engine, layer, passes)
     names = active_views(scene)
-    data = export_scene(engine, depsgraph, names[0])
+    settings = export_settings(scene, depsgraph.view_layer, passes, region)
+    data = export_scene(engine, depsgraph, names[0], settings["passes"])
     views = [View(names[0], data.camera)]
     views += [View(name, export_camera(engine, depsgraph, name)) for name in names[1:]]
-    settings = export_settings(scene, passes, region)
-    return Frame(layer, region, passes, settings, oidn, data, views)
+    mattes = _matte_names(data, enabled_cryptomattes(depsgraph.view_layer))
+    return Frame(layer, region, passes, settings, oidn, data, views, mattes)
+
+
+def _warn_missing(engine: Any, layer: str, passes: list[Pass]) -> None:
+    for p in passes:
+        if not p.source:
+            reporting.warn(
+                engine, f'view layer "{layer}": pass "{p.name}" is not rendered yet, black'
+            )
+
+
+def _matte_names(data: SceneData, mattes: list[str]) -> dict[str, list[str]]:
+    names = {
+        "CryptoObject": [o.name for o in data.objects],
+        "CryptoMaterial": [m.name for m in data.materials.materials],
+        "CryptoAsset": [o.asset for o in data.objects],
+    }
+    return {matte: sorted(set(names[matte])) for matte in mattes}
 
 
 def _denoiser(scene: Any) -> str:
@@ -157,7 +177,7 @@ def _run_session(
     if frame.oidn and not cancelled:
         progress.stage("Denoising")
         picture = _denoised(engine, session, frame)
-    writer.finish(session, picture)
+    writer.finish(session, metadata.fields(frame, session), picture)
     progress.update(session, final=True)
 
 

@@ -9,9 +9,11 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from . import cache
+from .cryptomatte import name_id
 from .scene_data import CameraData, EnvironmentImage, MeshData, SceneData
 
 
@@ -76,8 +78,10 @@ def build(
     for group in data.instances:
         scene.add_instances(
             indices[group.mesh], group.matrices, group.object_index,
-            mask=group.mask, flags=group.flags, name=group.name,
+            mask=group.mask, flags=group.flags, material_slots=group.material_slots,
+            name=group.name,
         )  # fmt: skip
+    scene.set_tables(**tables(data))
     world = data.world
     if parts.environment is None:
         scene.set_world_color(world.color)
@@ -92,6 +96,22 @@ def build(
     )  # fmt: skip
     scene.commit(threads=threads, cancel=cancel)
     return scene
+
+
+def tables(data: SceneData) -> dict[str, Any]:
+    """What passes tell of objects and materials, as the core's Scene.set_tables takes it."""
+    materials, slots = data.materials.materials, data.materials.slots
+    mattes = [(name_id(o.name), name_id(o.asset)) for o in data.objects]
+    return {
+        "object_pass_index": np.array([o.pass_index for o in data.objects], np.float32),
+        "object_mattes": np.array(mattes, np.uint32).reshape(-1, 2).view(np.float32),
+        "material_pass_index": np.array([m.pass_index for m in materials], np.float32),
+        "material_mattes": np.array([name_id(m.name) for m in materials], np.uint32).view(
+            np.float32
+        ),
+        "slot_begin": np.cumsum([0, *map(len, slots)], dtype=np.uint32),
+        "slots": np.array([m for indices in slots for m in indices], np.uint32),
+    }
 
 
 def _digest(core: Any, arrays: Iterable[NDArray[Any] | None], threads: int) -> bytes:
@@ -111,7 +131,7 @@ def _native_mesh(
         mesh.name, mesh.positions, mesh.corner_verts, mesh.face_offsets,
         tri2corner=mesh.tri2corner, tri2face=mesh.tri2face, corner_normals=mesh.corner_normals,
         vertex_normals=mesh.vertex_normals, smooth_faces=mesh.smooth_faces,
-        face_materials=mesh.face_materials,
+        face_materials=mesh.face_materials, corner_uvs=mesh.corner_uvs,
         builder=builder, threads=threads, cancel=cancel, same_geometry=same_geometry,
     )  # fmt: skip
 

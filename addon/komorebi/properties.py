@@ -141,6 +141,33 @@ class KomorebiViewLayerSettings(bpy.types.PropertyGroup):
         description="Camera samples of each pixel, as a fraction of the most that it may have",
         default=False, update=_update_render_passes,
     )  # fmt: skip
+    use_pass_instance_index: BoolProperty(
+        name="Instance Index", description="Another number for each instance, from 1 on",
+        default=False, update=_update_render_passes,
+    )  # fmt: skip
+    use_pass_variance: BoolProperty(
+        name="Variance", description="Variance of the samples of each pixel",
+        default=False, update=_update_render_passes,
+    )  # fmt: skip
+    use_pass_sky_visibility: BoolProperty(
+        name="Sky Visibility",
+        description="How much of a white sky each point sees, however far away what hides it is",
+        default=False, update=_update_render_passes,
+    )  # fmt: skip
+    use_pass_bent_normal: BoolProperty(
+        name="Bent Normal", description="Direction from which most light of a white sky comes",
+        default=False, update=_update_render_passes,
+    )  # fmt: skip
+    # Cycles has these two of its own, which count where it is enabled.
+    denoising_store_passes: BoolProperty(
+        name="Denoising Data", description="Normal, albedo and depth for the compositor's denoiser",
+        default=False, update=_update_render_passes,
+    )  # fmt: skip
+    use_pass_shadow_catcher: BoolProperty(
+        name="Shadow Catcher",
+        description="How much light things take from shadow catchers, to multiply a picture by",
+        default=False, update=_update_render_passes,
+    )  # fmt: skip
 
 
 def register() -> None:

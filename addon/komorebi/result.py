@@ -6,6 +6,8 @@ import time
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from . import compat
 from .errors import RenderError
 from .framing import Region
@@ -13,6 +15,7 @@ from .passes import Pass
 from .scene_data import FloatArray
 
 Tile = tuple[int, int, int, int]
+Fields = dict[str, str]
 
 DUTY = 10.0  # showing tiles may take a tenth of the time
 
@@ -46,9 +49,15 @@ class ResultWriter:
         end = time.monotonic()
         self._next = end + DUTY * (end - start)
 
-    def finish(self, session: Any, combined: FloatArray | None = None) -> None:
-        """Writes every pass of the whole region; `combined` takes the place of that pass."""
+    def finish(self, session: Any, fields: Fields, combined: FloatArray | None = None) -> None:
+        """Writes every pass of the whole region; `combined` takes the place of that pass.
+
+        `fields` go into the file of the picture.
+        """
         self._write(session, (0, 0, self._width, self._height), self._passes, combined)
+        result = self._engine.get_result()
+        for name, value in fields.items():
+            result.stamp_data_add_field(name, value)
 
     def _write(
         self, session: Any, tile: Tile, passes: list[Pass], combined: FloatArray | None = None
@@ -70,7 +79,8 @@ class ResultWriter:
                     continue
                 if combined is not None and p.name == "Combined":
                     compat.set_rect(target, combined)
-                else:
-                    compat.set_rect(target, session.read(p.source, x, y, width, height))
+                elif p.source:  # else Blender's zeros stay
+                    pixels = session.read(p.source, x, y, width, height)
+                    compat.set_rect(target, np.broadcast_to(pixels, (height, width, p.channels)))
         finally:
             self._engine.end_result(result)

@@ -33,6 +33,7 @@ class MeshData:
     vertex_normals: FloatArray | None = None  # [vertices, 3]; with neither all faces are flat
     smooth_faces: BoolArray | None = None  # [faces]; None: all smooth if there are normals
     face_materials: IntArray | None = None  # [faces]; None: all slot 0
+    corner_uvs: FloatArray | None = None  # [corners, 2]; None: no UV map, or no pass that shows it
 
     def geometry(self) -> Arrays:
         """What decides where rays hit: with the same, two meshes share a tree."""
@@ -42,7 +43,10 @@ class MeshData:
 
     def shading(self) -> Arrays:
         """Everything else but the name."""
-        return self.corner_normals, self.vertex_normals, self.smooth_faces, self.face_materials
+        return (
+            self.corner_normals, self.vertex_normals, self.smooth_faces, self.face_materials,
+            self.corner_uvs,
+        )  # fmt: skip
 
 
 @dataclass(slots=True)
@@ -52,9 +56,10 @@ class InstanceData:
     mesh: int  # index into SceneData.meshes
     name: str
     matrices: DoubleArray  # [count, 4, 4]
-    object_index: UIntArray  # [count], index into SceneData.object_names
+    object_index: UIntArray  # [count], index into SceneData.objects
     mask: UIntArray | None = None  # [count], bits RAY_*; None: seen by every ray
     flags: UIntArray | None = None  # [count], bits FLAG_*; None: none
+    material_slots: UIntArray | None = None  # [count], index into Materials.slots; None: all 0
 
 
 RAY_CAMERA = 1 << 0
@@ -98,6 +103,31 @@ class WorldData:
 
 
 @dataclass(slots=True)
+class ObjectData:
+    """An object as passes tell of it."""
+
+    name: str
+    pass_index: int
+    asset: str  # the name of the object that it hangs on in the end, itself without a parent
+
+
+@dataclass(slots=True)
+class MaterialData:
+    """A material as passes tell of it."""
+
+    name: str
+    pass_index: int
+
+
+@dataclass(slots=True)
+class Materials:
+    """The materials in use, and the lists of slots that instances have."""
+
+    materials: list[MaterialData] = field(default_factory=list)
+    slots: list[tuple[int, ...]] = field(default_factory=list)  # indices of materials
+
+
+@dataclass(slots=True)
 class SceneData:
     """Everything that a view layer of a frame shows."""
 
@@ -105,5 +135,6 @@ class SceneData:
     world: WorldData
     meshes: list[MeshData] = field(default_factory=list)
     instances: list[InstanceData] = field(default_factory=list)
-    object_names: list[str] = field(default_factory=list)
+    objects: list[ObjectData] = field(default_factory=list)
+    materials: Materials = field(default_factory=Materials)
     ignored: dict[str, int] = field(default_factory=dict)  # kind of object → how many

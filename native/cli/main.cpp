@@ -21,7 +21,7 @@ std::vector<float> interleaved_passes(Session& session, const Rect& region) {
   std::vector<float> all(kChannels * region.area());
   std::size_t first = 0;
   for (const char* name : {"Combined", "Depth", "Normal", "Debug Sample Count"}) {
-    const std::size_t channels = Film::pass(name).channels;
+    const std::size_t channels = find_pass(name).channels;
     std::vector<float> pass(channels * region.area());
     session.read(name, region, pass.data());
     for (std::size_t i = 0; i < region.area(); ++i) {

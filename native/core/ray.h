@@ -9,6 +9,9 @@ enum RayMask : std::uint32_t {
   kMaskCamera = 1u << 0,
   kMaskDiffuse = 1u << 1,
   kMaskShadow = 1u << 2,
+  kMaskRays = kMaskCamera | kMaskDiffuse | kMaskShadow,
+  /// The same bits, so far up, are for rays that see shadow catchers alone (as Cycles).
+  kMaskCatcherShift = 16,
   kMaskAll = 0xffffffffu,
 };
 

@@ -18,7 +18,8 @@ inline constexpr std::uint32_t kDimensionsPerVertex = 8;
 enum VertexDimension : std::uint32_t {
   kVertexLightDirection = 0,  ///< 0–1: direction of a light ray
   kVertexLightChoice = 2,     ///< which strategy or light; 3 reserved
-  kVertexScatter = 4,         ///< 4–5: direction of the next bounce; 6–7 reserved
+  kVertexScatter = 4,         ///< 4–5: direction of the next bounce
+  kVertexAmbient = 6,         ///< 6–7: direction of a ray for ambient occlusion beside light rays
 };
 
 /// The dimension of use `use` at path vertex `vertex` (0: where the camera ray hits). Light ray j

@@ -47,6 +47,7 @@ struct MeshView {
   const std::uint32_t* tri2normal = nullptr;    ///< [triangle_count][3], rows of `normals`
   const std::uint8_t* tri2smooth = nullptr;     ///< [triangle_count]; null: all smooth if `normals`
   const std::uint16_t* tri2material = nullptr;  ///< [triangle_count]; null: all slot 0
+  const float* tri2uv = nullptr;                ///< [triangle_count][3][2]; null: no UV map is kept
   const AttributeView* attributes = nullptr;
   std::uint32_t attribute_count = 0;
   TreeView tree;
@@ -64,7 +65,7 @@ struct InstanceView {
   std::uint32_t mask = kMaskAll;      ///< RayMask bits that see it
   std::uint32_t flags = 0;            ///< InstanceFlag bits
   std::uint32_t object_index = 0;     ///< which Blender object it came from
-  std::uint32_t material_table = 0;   ///< first entry of its material slots
+  std::uint32_t material_slots = 0;   ///< which list of slots (render/scene_tables.h)
   std::uint32_t transform_count = 1;  ///< 1 = still; n transforms in time, from first_transform
   std::uint32_t first_transform = kNone;
   // Filled by place_instance() (bvh/instance_tree.h) when all of the above is known:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "bvh/choose_builder.h"
 #include "io/image.h"
@@ -18,8 +19,8 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
                                 const py::object& tri2corner, const py::object& tri2face,
                                 const py::object& corner_normals, const py::object& smooth_faces,
                                 const py::object& face_materials, const py::object& vertex_normals,
-                                const std::string& builder, unsigned threads,
-                                const std::shared_ptr<Cancel>& cancel,
+                                const py::object& corner_uvs, const std::string& builder,
+                                unsigned threads, const std::shared_ptr<Cancel>& cancel,
                                 const std::shared_ptr<Mesh>& same_geometry) {
   const std::string mesh = "mesh \"" + name + "\": ";
   MeshInput input;
@@ -34,6 +35,7 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
   const auto smooth = optional_view<bool>(smooth_faces, mesh + "smooth_faces", {-1});
   input.face2smooth = {reinterpret_cast<const std::uint8_t*>(smooth.data()), smooth.size()};
   input.face2material = optional_view<std::int32_t>(face_materials, mesh + "face_materials", {-1});
+  input.corner2uv = optional_view<float>(corner_uvs, mesh + "corner_uvs", {-1, 2});
   const Builder kind = builder_from_name(builder);
   const py::gil_scoped_release release;
   // Python has no const; nothing that is bound below changes a mesh.
@@ -93,18 +95,22 @@ Mat4d matrix4(const T* rows) {
 
 void add_instances(Scene& scene, std::uint32_t mesh, const py::array& matrices,
                    const py::object& object_index, const py::object& mask, const py::object& flags,
-                   const std::string& name) {
+                   const py::object& material_slots, const std::string& name) {
   const std::string what = "instances of \"" + name + "\": ";
   const py::ssize_t n = matrices.ndim() > 0 ? matrices.shape(0) : 0;
   const auto objects = view<std::uint32_t>(object_index, what + "object_index", {n});
   const auto masks = optional_view<std::uint32_t>(mask, what + "mask", {n});
   const auto flag_values = optional_view<std::uint32_t>(flags, what + "flags", {n});
+  const auto slots = optional_view<std::uint32_t>(material_slots, what + "material_slots", {n});
   std::vector<InstanceInput> instances(static_cast<std::size_t>(n));
   const auto fill = [&](const auto& values) {
     for (std::size_t i = 0; i < instances.size(); ++i) {
-      instances[i] = {mesh, matrix4(&values[16 * i]), objects[i],
+      instances[i] = {mesh,
+                      matrix4(&values[16 * i]),
+                      objects[i],
                       masks.empty() ? kMaskAll : masks[i],
-                      flag_values.empty() ? 0u : flag_values[i]};
+                      flag_values.empty() ? 0u : flag_values[i],
+                      slots.empty() ? 0u : slots[i]};
     }
   };
   if (py::isinstance<py::array_t<float>>(matrices)) {
@@ -144,6 +150,30 @@ void set_world_environment(Scene& scene, std::shared_ptr<const Environment> envi
   scene.set_world_environment(std::move(environment), strength, rotation);
 }
 
+void set_tables(Scene& scene, const py::object& object_pass_index, const py::object& object_mattes,
+                const py::object& material_pass_index, const py::object& material_mattes,
+                const py::object& slot_begin, const py::object& slots) {
+  const auto object_index = view<float>(object_pass_index, "object_pass_index", {-1});
+  const auto objects = static_cast<py::ssize_t>(object_index.size());
+  const auto object_ids = view<float>(object_mattes, "object_mattes", {objects, 2});
+  const auto material_index = view<float>(material_pass_index, "material_pass_index", {-1});
+  const auto materials = static_cast<py::ssize_t>(material_index.size());
+  const auto material_ids = view<float>(material_mattes, "material_mattes", {materials});
+  const auto begin = view<std::uint32_t>(slot_begin, "slot_begin", {-1});
+  const auto entries = view<std::uint32_t>(slots, "slots", {-1});
+  SceneTables tables;
+  for (std::size_t i = 0; i < object_index.size(); ++i) {
+    tables.objects.push_back({object_index[i], std::bit_cast<std::uint32_t>(object_ids[2 * i]),
+                              std::bit_cast<std::uint32_t>(object_ids[2 * i + 1])});
+  }
+  for (std::size_t i = 0; i < material_index.size(); ++i) {
+    tables.materials.push_back({material_index[i], std::bit_cast<std::uint32_t>(material_ids[i])});
+  }
+  tables.slot_begin.assign(begin.begin(), begin.end());
+  tables.slots.assign(entries.begin(), entries.end());
+  scene.set_tables(std::move(tables));
+}
+
 void commit(Scene& scene, unsigned threads, const std::shared_ptr<Cancel>& cancel) {
   const py::gil_scoped_release release;
   scene.commit(*build_pool(threads), cancel_or_never(cancel));
@@ -161,15 +191,15 @@ face_offsets: int32 [F + 1], first corner of each face. tri2corner int32 [T, 3] 
 int32 [T]: Blender's loop triangles; None if every face has three or four corners.
 corner_normals: float32 [C, 3], or vertex_normals: float32 [V, 3], unit; a row that is not finite
 counts as none, and without both every face is flat. smooth_faces: bool [F], None if all are
-smooth. face_materials: int32 [F]. builder: LINEAR, SAH, PRINCIPAL_AXIS or LIST.
+smooth. face_materials: int32 [F]. corner_uvs: float32 [C, 2], for the UV pass. builder: LINEAR, SAH, PRINCIPAL_AXIS or LIST.
 same_geometry: a mesh made from the same positions, corners and triangles, whose tree is shared then.
 Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
            py::arg("name"), py::arg("positions"), py::arg("corner_verts"), py::arg("face_offsets"),
            py::kw_only(), py::arg("tri2corner") = py::none(), py::arg("tri2face") = py::none(),
            py::arg("corner_normals") = py::none(), py::arg("smooth_faces") = py::none(),
            py::arg("face_materials") = py::none(), py::arg("vertex_normals") = py::none(),
-           py::arg("builder") = "LINEAR", py::arg("threads") = 0,
-           py::arg("cancel") = std::shared_ptr<Cancel>(),
+           py::arg("corner_uvs") = py::none(), py::arg("builder") = "LINEAR",
+           py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
            py::arg("same_geometry") = std::shared_ptr<Mesh>())
       .def_property_readonly("name", &Mesh::name)
       .def_property_readonly("triangle_count", &Mesh::triangle_count)
@@ -220,9 +250,16 @@ void bind_scene(py::module_& module) {
           py::arg("mesh"), "Returns the mesh's index in this scene.")
       .def("add_instances", &add_instances, py::arg("mesh"), py::arg("matrices"),
            py::arg("object_index"), py::kw_only(), py::arg("mask") = py::none(),
-           py::arg("flags") = py::none(), py::arg("name") = "",
+           py::arg("flags") = py::none(), py::arg("material_slots") = py::none(),
+           py::arg("name") = "",
            "matrices: world from object, float64 or float32 [N, 4, 4], M @ p; object_index, mask, "
-           "flags: uint32 [N].")
+           "flags, material_slots (which list of set_tables): uint32 [N].")
+      .def("set_tables", &set_tables, py::kw_only(), py::arg("object_pass_index"),
+           py::arg("object_mattes"), py::arg("material_pass_index"), py::arg("material_mattes"),
+           py::arg("slot_begin"), py::arg("slots"),
+           "What passes tell of objects and materials. Pass indices and Cryptomatte ids: float32 "
+           "[N], object_mattes [N, 2] of object and asset. List l of material slots is "
+           "slots[slot_begin[l]:slot_begin[l + 1]], indices of materials; uint32 both.")
       .def(
           "set_world_color",
           [](Scene& scene, const std::array<float, 3>& c) {

@@ -40,6 +40,11 @@ Enum parse(const char* setting, const std::string& name, const Choice<Enum> (&ch
   throw std::invalid_argument(std::string(setting) + " must be one of " + known + ", not " + name);
 }
 
+constexpr Choice<MistFalloff> kMistFalloffs[] = {
+    {"QUADRATIC", MistFalloff::kQuadratic},
+    {"LINEAR", MistFalloff::kLinear},
+    {"INVERSE_QUADRATIC", MistFalloff::kInverseQuadratic}};
+
 using Region = std::array<std::uint32_t, 4>;
 
 std::shared_ptr<Settings> make_settings(
@@ -48,7 +53,8 @@ std::shared_ptr<Settings> make_settings(
     float adaptive_threshold, std::uint32_t adaptive_min_samples, float time_limit,
     float ao_distance, const std::string& ao_sampling, const std::array<float, 3>& clay_color,
     const std::string& environment_sampling, const std::string& pixel_filter, float filter_width,
-    bool use_progressive, bool film_transparent, std::uint32_t threads, std::uint32_t tile_size,
+    bool use_progressive, bool film_transparent, float mist_start, float mist_depth,
+    const std::string& mist_falloff, std::uint32_t threads, std::uint32_t tile_size,
     const std::optional<Region>& region, const std::vector<std::string>& passes) {
   auto s = std::make_shared<Settings>();
   s->method = parse("method", method, kMethods);
@@ -69,6 +75,9 @@ std::shared_ptr<Settings> make_settings(
   s->filter_width = filter_width;
   s->use_progressive = use_progressive;
   s->film_transparent = film_transparent;
+  s->mist_start = mist_start;
+  s->mist_depth = mist_depth;
+  s->mist_falloff = parse("mist_falloff", mist_falloff, kMistFalloffs);
   s->threads = threads;
   s->tile_size = tile_size;
   s->has_region = region.has_value();
@@ -102,7 +111,7 @@ py::array_t<float> read(Session& session, const std::string& pass, std::uint32_t
     throw std::invalid_argument("the rectangle to read lies outside the film");
   }
   const Rect rect{region.x_min + x, region.y_min + y, region.x_min + x + w, region.y_min + y + h};
-  py::array_t<float> out({py::ssize_t{h}, py::ssize_t{w}, py::ssize_t{Film::pass(pass).channels}});
+  py::array_t<float> out({py::ssize_t{h}, py::ssize_t{w}, py::ssize_t{find_pass(pass).channels}});
   float* data = out.mutable_data();
   const py::gil_scoped_release release;
   session.read(pass, rect, data);
@@ -155,9 +164,10 @@ void bind_settings(py::module_& module) {
            py::arg("clay_color") = std::array<float, 3>{0.8f, 0.8f, 0.8f},
            py::arg("environment_sampling") = "PRODUCT", py::arg("pixel_filter") = "BLACKMAN_HARRIS",
            py::arg("filter_width") = d.filter_width, py::arg("use_progressive") = d.use_progressive,
-           py::arg("film_transparent") = d.film_transparent, py::arg("threads") = d.threads,
-           py::arg("tile_size") = d.tile_size, py::arg("region") = std::optional<Region>(),
-           py::arg("passes") = d.passes,
+           py::arg("film_transparent") = d.film_transparent, py::arg("mist_start") = d.mist_start,
+           py::arg("mist_depth") = d.mist_depth, py::arg("mist_falloff") = "QUADRATIC",
+           py::arg("threads") = d.threads, py::arg("tile_size") = d.tile_size,
+           py::arg("region") = std::optional<Region>(), py::arg("passes") = d.passes,
            "region: (x_min, y_min, x_max, y_max) in full-frame pixels, half open, row 0 at the "
            "bottom; None is the whole frame. threads 0: one a core. ValueError for a name that is "
            "not known; ranges are checked when a Session starts.");
@@ -192,12 +202,11 @@ void bind_session(py::module_& module) {
           "resolved", &resolved,
           "What was automatic in the settings, decided: light_samples, and under "
           "adaptive sampling adaptive_threshold and adaptive_min_samples.")
-      .def(
-          "read", &read, py::arg("pass_name"), py::arg("x") = 0, py::arg("y") = 0,
-          py::arg("width") = py::none(), py::arg("height") = py::none(),
-          "A pass as float32 [height, width, channels], row 0 at the bottom: Combined 4 "
-          "(premultiplied, scene linear), Depth 1, Normal 3, Debug Sample Count 1 (the fraction of "
-          "`samples`). ValueError for a pass that the settings did not name.")
+      .def("read", &read, py::arg("pass_name"), py::arg("x") = 0, py::arg("y") = 0,
+           py::arg("width") = py::none(), py::arg("height") = py::none(),
+           "A pass as float32 [height, width, channels], row 0 at the bottom; known_passes() has "
+           "the channels of each. Combined is premultiplied and scene linear. ValueError for a "
+           "pass that the settings did not name.")
       .def_property_readonly("error", &error)
       .def_property_readonly("byte_count", &Session::byte_count);
   auto scene =

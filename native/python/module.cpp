@@ -33,10 +33,10 @@ py::dict build_info() {
   return info;
 }
 
-std::vector<std::string> pass_names() {
-  std::vector<std::string> names;
-  for (const PassDesc& pass : known_passes()) names.emplace_back(pass.name);
-  return names;
+py::dict pass_channels() {
+  py::dict channels;
+  for (const PassDesc& pass : known_passes()) channels[pass.name] = pass.channels;
+  return channels;
 }
 
 }  // namespace
@@ -61,7 +61,9 @@ PYBIND11_MODULE(_komorebi, module) {
   module.attr("__version__") = KOMOREBI_VERSION;
   module.def("build_info", &build_info,
              "Version, compiler, instruction sets and libraries of this build, as a dict.");
-  module.def("known_passes", &pass_names, "Names of the passes that a Session can read.");
+  module.def("known_passes", &pass_channels,
+             "Passes that a Session can read, and their channels; a Cryptomatte's parts "
+             "(CryptoObject00 and so on) beside them.");
   module.def("force_instruction_set", &force_instruction_set, py::arg("name"),
              "For tests: trace with this instruction set, '' for the best. ValueError if unknown.");
   py::register_exception<Cancelled>(module, "Cancelled", PyExc_RuntimeError);

@@ -5,6 +5,7 @@
 #include "bvh/traverse.h"
 #include "render/camera_kernel.h"
 #include "render/one_ray.h"
+#include "render/pass_row.h"
 
 namespace komorebi {
 namespace {
@@ -15,6 +16,22 @@ constexpr std::size_t kPathsPerBatch = 4096;
 constexpr std::size_t kPixelsTogether = 64;
 
 }  // namespace
+
+BatchIntegrator::BatchIntegrator(const RenderContext& context)
+    : context_(context),
+      of_light_(passes_of_light_rays(context)),
+      light_caster_(context),
+      has_catchers_(context.passes.keeps(Quantity::kCatcherLight)) {
+  for (const AmbientCast& cast : ambient_casts(context)) {
+    ambient_.push_back({cast.passes, LightCaster(cast.context)});
+  }
+}
+
+std::uint64_t BatchIntegrator::ray_count() const {
+  std::uint64_t count = camera_ray_count_ + light_caster_.ray_count();
+  for (const Ambient& ambient : ambient_) count += ambient.caster.ray_count();
+  return count;
+}
 
 void BatchIntegrator::start(std::size_t begin, std::size_t end, std::uint32_t first,
                             std::uint32_t samples) {
@@ -38,7 +55,7 @@ void BatchIntegrator::start(std::size_t begin, std::size_t end, std::uint32_t fi
   start_camera_rays(count);
   hits_.resize(paths_.size());
   intersect(context_.scene, camera_rays_.span(), hits_.data());
-  rays_ += paths_.size();
+  camera_ray_count_ += paths_.size();
 }
 
 void BatchIntegrator::start_camera_rays(std::uint32_t count) {
@@ -63,65 +80,104 @@ void BatchIntegrator::start_camera_rays(std::uint32_t count) {
 }
 
 void BatchIntegrator::shade() {
+  const PassLayout& layout = context_.passes;
   const RaySpan rays = camera_rays_.span();
-  results_.resize(paths_.size());
+  results_.assign(paths_.size(), PixelSample{});
+  rows_.resize(layout.size() * paths_.size());
   surfaces_.clear(rays.count);
   for (std::uint32_t i = 0; i < rays.count; ++i) {
-    if (hits_[i].valid()) {
+    if (layout.size() > 0) clear_row(layout, row(i));
+    if (!hits_[i].valid()) {
+      const Vec3 direction(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]);
+      results_[i] = background(context_, direction);
+      put_environment(context_, direction, row(i));
+      put_matte(layout, results_[i], row(i));
+    } else if (!is_holdout(context_, hits_[i])) {
+      results_[i].alpha = 1.0f;
       surfaces_.push(i, hits_[i], rays.time[i], pixels_[paths_[i].pixel].seed,
                      paths_[i].sample * context_.light_samples);
-    } else {
-      results_[i] =
-          background(context_, Vec3(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]));
     }
   }
   surfaces_.fill(context_, hits_.data(), rays);
+  if (layout.size() == 0) return;
   for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
-    results_[surfaces_.path(s)] = seen_surface(surfaces_.normal(s), surfaces_.depth(s));
+    const std::uint32_t path = surfaces_.path(s);
+    put_surface(context_, hits_[path], rays[path], surfaces_.normal(s), surfaces_.depth(s),
+                paths_[path].sample, row(path));
   }
 }
 
 bool BatchIntegrator::light(const Cancel& cancel) {
-  const std::uint32_t size = light_block_.capacity();
-  for (std::uint32_t begin = 0; begin < surfaces_.size(); begin += size) {
-    if (cancel.raised()) return false;
-    cast_block(begin, std::min(surfaces_.size(), begin + size));
+  const auto for_each_block = [&](const LightCaster& caster, const auto& cast) {
+    const std::uint32_t size = caster.block_size();
+    for (std::uint32_t begin = 0; begin < surfaces_.size(); begin += size) {
+      if (cancel.raised()) return;
+      cast(begin, std::min(surfaces_.size(), begin + size));
+    }
+  };
+  for_each_block(light_caster_,
+                 [&](std::uint32_t begin, std::uint32_t end) { light_block(begin, end); });
+  for (Ambient& ambient : ambient_) {
+    for_each_block(ambient.caster, [&](std::uint32_t begin, std::uint32_t end) {
+      ambient_block(ambient.passes, ambient.caster, begin, end);
+    });
   }
   for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
     results_[surfaces_.path(s)].radiance /= static_cast<float>(context_.light_samples);
   }
+  if (context_.passes.size() > 0) finish_passes();
   return !cancel.raised();
 }
 
-void BatchIntegrator::cast_block(std::uint32_t begin, std::uint32_t end) {
-  light_block_.draw(context_, surfaces_.light_block(begin, end));
-  first_ray_.clear();
-  places_.clear();
-  for (std::uint32_t p = 0; p < end - begin; ++p) {
-    first_ray_.push_back(static_cast<std::uint32_t>(places_.size()));
-    for (std::uint32_t j = 0; j < context_.light_samples; ++j) {
-      const std::uint32_t place = light_block_.place(p, j);
-      if (light_block_.contribution(place) != Vec3(0.0f)) places_.push_back(place);
-    }
+void BatchIntegrator::light_block(std::uint32_t begin, std::uint32_t end) {
+  const PassLayout& layout = context_.passes;
+  if (!of_light_.any()) {
+    light_caster_.cast(surfaces_, begin, end,
+                       [&](std::uint32_t s, const Vec3&, const Vec3& contribution, bool visible) {
+                         if (visible) results_[surfaces_.path(s)].radiance += contribution;
+                       });
+  } else {
+    light_caster_.cast(
+        surfaces_, begin, end,
+        [&](std::uint32_t s, const Vec3& direction, const Vec3& contribution, bool visible) {
+          if (!visible) return;
+          const std::uint32_t path = surfaces_.path(s);
+          results_[path].radiance += contribution;
+          add_ambient(layout, of_light_, direction, contribution.x, row(path));
+        });
   }
-  first_ray_.push_back(static_cast<std::uint32_t>(places_.size()));
+  if (!has_catchers_) return;
+  light_caster_.cast_alone(
+      surfaces_, begin, end,
+      [&](std::uint32_t s) { return is_catcher(context_, hits_[surfaces_.path(s)].instance); },
+      [&](std::uint32_t s, const Vec3& contribution) {
+        layout.add(row(surfaces_.path(s)), Quantity::kCatcherLight, contribution);
+      });
+}
 
-  RayBundles bundles{};
-  surfaces_.lend(bundles, begin, end);
-  light_block_.lend(bundles, context_.light_distance);
-  bundles.first_ray = first_ray_.data();
-  bundles.place = places_.data();
-  bundles.mask = kMaskShadow;
-  occluded_bits_.resize((places_.size() + 31) / 32);
-  occluded(context_.scene, bundles, occluded_bits_.data());
-  rays_ += places_.size();
-  for (std::uint32_t p = 0; p < end - begin; ++p) {
-    Vec3& radiance = results_[surfaces_.path(begin + p)].radiance;
-    for (std::uint32_t k = first_ray_[p]; k < first_ray_[p + 1]; ++k) {
-      // in the order drawn: sums are in floats
-      if ((occluded_bits_[k / 32] >> (k % 32)) & 1u) continue;
-      radiance += light_block_.contribution(places_[k]);
+void BatchIntegrator::ambient_block(const AmbientPasses& passes, LightCaster& caster,
+                                    std::uint32_t begin, std::uint32_t end) {
+  caster.cast(surfaces_, begin, end,
+              [&](std::uint32_t s, const Vec3& direction, const Vec3& contribution, bool visible) {
+                if (!visible) return;
+                add_ambient(context_.passes, passes, direction, contribution.x,
+                            row(surfaces_.path(s)));
+              });
+}
+
+void BatchIntegrator::finish_passes() {
+  const PassLayout& layout = context_.passes;
+  const RaySpan rays = camera_rays_.span();
+  const auto light_rays = static_cast<float>(context_.light_samples);
+  for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
+    const std::uint32_t path = surfaces_.path(s);
+    if (layout.keeps_ambient()) finish_ambient(context_, row(path));
+    if (!is_catcher(context_, hits_[path].instance)) {
+      put_matte(layout, results_[path], row(path));
+      continue;
     }
+    layout.divide(row(path), Quantity::kCatcherLight, light_rays);
+    put_environment(context_, rays[path].direction, row(path));
   }
 }
 
@@ -139,7 +195,7 @@ bool BatchIntegrator::trace(std::uint32_t first, std::uint32_t count, const Canc
     shade();
     if (!light(cancel)) return false;
     for (std::size_t i = 0; i < paths_.size(); ++i) {
-      visit(paths_[i].pixel, paths_[i].sample, results_[i]);
+      visit(paths_[i].pixel, paths_[i].sample, results_[i], row(static_cast<std::uint32_t>(i)));
     }
   }
   return true;
@@ -156,19 +212,19 @@ bool BatchIntegrator::render(Cells cells, std::uint32_t first, std::uint32_t cou
   film.reset(sums, pixels_.size());
   sums.samples = count;
   return trace(first, count, cancel,
-               [&](std::uint32_t pixel, std::uint32_t sample, const PixelSample& result) {
-                 film.add(sums, pixel, sample, result);
-               });
+               [&](std::uint32_t pixel, std::uint32_t sample, const PixelSample& result,
+                   const float* row) { film.add(sums, pixel, sample, result, row); });
 }
 
 bool BatchIntegrator::sample(std::span<const PixelPlace> pixels, std::uint32_t count,
                              Vec3* radiance, const Cancel& cancel) {
   pixels_.clear();
   for (const PixelPlace& pixel : pixels) add_pixel(pixel.x, pixel.y);
-  return trace(0, count, cancel,
-               [&](std::uint32_t pixel, std::uint32_t sample, const PixelSample& result) {
-                 radiance[std::size_t{pixel} * count + sample] = result.radiance;
-               });
+  return trace(
+      0, count, cancel,
+      [&](std::uint32_t pixel, std::uint32_t sample, const PixelSample& result, const float*) {
+        radiance[std::size_t{pixel} * count + sample] = result.radiance;
+      });
 }
 
 }  // namespace komorebi

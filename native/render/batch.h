@@ -4,10 +4,11 @@
 #include <vector>
 
 #include "parallel/cancel.h"
+#include "render/ambient.h"
 #include "render/cells.h"
 #include "render/context.h"
 #include "render/film.h"
-#include "render/light_block.h"
+#include "render/light_caster.h"
 #include "render/ray_batch.h"
 #include "render/surface_batch.h"
 
@@ -22,8 +23,7 @@ struct PixelPlace {
 /// rays → occlusion → film. The arrays live as long as the object, one a thread.
 class BatchIntegrator {
  public:
-  explicit BatchIntegrator(const RenderContext& context)
-      : context_(context), light_block_(context.light_samples) {}
+  explicit BatchIntegrator(const RenderContext& context);
 
   /// Adds samples [first, first + count) of every pixel of `cells` to `sums`.
   /// False when cancelled on the way; the sums are then to be thrown away.
@@ -34,7 +34,7 @@ class BatchIntegrator {
   bool sample(std::span<const PixelPlace> pixels, std::uint32_t count, Vec3* radiance,
               const Cancel& cancel);
 
-  std::uint64_t ray_count() const { return rays_; }
+  std::uint64_t ray_count() const;
 
  private:
   struct Pixel {
@@ -49,7 +49,7 @@ class BatchIntegrator {
   static constexpr std::uint32_t kPadding = 16;
 
   void add_pixel(std::uint32_t x, std::uint32_t y);
-  /// Samples [first, first + count) of pixels_; visit(pixel, sample, result) is told each.
+  /// Samples [first, first + count) of pixels_; visit(pixel, sample, result, row) is told each.
   template <class Visit>
   bool trace(std::uint32_t first, std::uint32_t count, const Cancel& cancel, const Visit& visit);
   /// Paths [begin, end) of the samples [first, first + samples) of pixels_.
@@ -57,7 +57,11 @@ class BatchIntegrator {
   void start_camera_rays(std::uint32_t count);
   void shade();
   bool light(const Cancel& cancel);
-  void cast_block(std::uint32_t begin, std::uint32_t end);
+  void light_block(std::uint32_t begin, std::uint32_t end);
+  void ambient_block(const AmbientPasses& passes, LightCaster& caster, std::uint32_t begin,
+                     std::uint32_t end);
+  void finish_passes();
+  float* row(std::uint32_t path) { return rows_.data() + context_.passes.size() * path; }
 
   RenderContext context_;
   std::vector<Pixel> pixels_;
@@ -67,10 +71,16 @@ class BatchIntegrator {
   std::vector<Hit> hits_;
   SurfaceBatch surfaces_;
   std::vector<PixelSample> results_;
-  LightBlockBuffer light_block_;
-  std::vector<std::uint32_t> first_ray_, places_;  // of the light rays that are traced: RayBundles
-  std::vector<std::uint32_t> occluded_bits_;
-  std::uint64_t rays_ = 0;
+  std::vector<float> rows_;  // [paths][context_.passes.size()]
+  AmbientPasses of_light_;   // passes that light rays fill
+  LightCaster light_caster_;
+  struct Ambient {
+    AmbientPasses passes;
+    LightCaster caster;
+  };
+  std::vector<Ambient> ambient_;
+  bool has_catchers_;
+  std::uint64_t camera_ray_count_ = 0;
 };
 
 }  // namespace komorebi

@@ -20,6 +20,12 @@ float cosine_share(EnvironmentSampling sampling, bool uniform_world) {
   return 1.0f;
 }
 
+/// Ambient occlusion asks who casts shadows. So does light from a map, but an even sky is sampled
+/// by Cycles through the surface alone, and there it is the visibility to diffuse rays that counts.
+std::uint32_t light_mask(const Scene& scene, Method method) {
+  return method == Method::kWorldLight && scene.world_is_uniform() ? kMaskDiffuse : kMaskShadow;
+}
+
 }  // namespace
 
 RenderContext make_context(const Scene& scene, const Settings& settings, const FilterView& filter) {
@@ -33,7 +39,9 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.method = settings.method;
   context.ao_sampling = settings.ao_sampling;
   context.albedo = ao ? Vec3(1.0f) : settings.clay_color;
-  context.light_distance = ao && settings.ao_distance > 0.0f ? settings.ao_distance : Ray{}.t_max;
+  context.ao_distance = settings.ao_distance > 0.0f ? settings.ao_distance : Ray{}.t_max;
+  context.light_distance = ao ? context.ao_distance : Ray{}.t_max;
+  context.light_mask = light_mask(scene, settings.method);
   context.cosine_share = cosine_share(settings.environment_sampling, scene.world_is_uniform());
   const auto& map = scene.world_environment();
   if (!ao && map && !map->black() &&
@@ -43,6 +51,14 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.transparent = settings.film_transparent;
   context.seed = settings.seed;
   context.light_samples = resolved_light_samples(settings);
+  context.passes =
+      make_pass_layout(settings.passes, scene.has_catchers(), settings.film_transparent);
+  context.tables = &scene.tables();
+  context.origin = scene.origin();
+  context.first_sample = settings.sample_offset;
+  context.mist_start = settings.mist_start;
+  context.mist_depth = settings.mist_depth;
+  context.mist_falloff = settings.mist_falloff;
   return context;
 }
 

@@ -3,7 +3,9 @@
 #include "core/camera.h"
 #include "core/environment_product.h"
 #include "core/filter.h"
+#include "core/sampler.h"
 #include "core/scene_view.h"
+#include "render/passes.h"
 #include "render/scene.h"
 #include "render/settings.h"
 
@@ -22,9 +24,19 @@ struct RenderContext {
   Vec3 albedo{1.0f};            ///< of every surface; 1 for ambient occlusion
   float light_distance = 0.0f;  ///< largest t of a light ray
   float cosine_share = 1.0f;  ///< share of light rays drawn from the cosine; the rest from the map
+  std::uint32_t light_mask = kMaskShadow;                   ///< of light rays
+  VertexDimension light_dimension = kVertexLightDirection;  ///< that light rays are drawn by
   bool transparent = false;
   std::uint32_t seed = 0;
   std::uint32_t light_samples = 1;
+
+  PassLayout passes;                    ///< what is kept besides radiance and alpha
+  const SceneTables* tables = nullptr;  ///< for passes that tell what is seen
+  Vec3d origin{0.0};                    ///< of the scene's space in Blender's
+  std::uint32_t first_sample = 0;
+  float ao_distance = 0.0f;  ///< largest t of a ray for ambient occlusion, whatever the method
+  float mist_start = 0.0f, mist_depth = 0.0f;
+  MistFalloff mist_falloff = MistFalloff::kQuadratic;
 };
 
 /// The settings are checked and the scene is committed and outlives the context.

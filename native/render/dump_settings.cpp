@@ -27,6 +27,9 @@ void for_each_setting(SettingsLike& s, const Visit& visit) {
   visit("filter_width", s.filter_width);
   visit("use_progressive", s.use_progressive);
   visit("film_transparent", s.film_transparent);
+  visit("mist_start", s.mist_start);
+  visit("mist_depth", s.mist_depth);
+  visit("mist_falloff", s.mist_falloff);
   visit("tile_size", s.tile_size);
   visit("has_region", s.has_region);
   visit("region_x_min", s.region.x_min);
@@ -46,6 +49,9 @@ constexpr std::uint32_t last_value(EnvironmentSampling) {
   return 3;
 }
 constexpr std::uint32_t last_value(PixelFilter) {
+  return 2;
+}
+constexpr std::uint32_t last_value(MistFalloff) {
   return 2;
 }
 

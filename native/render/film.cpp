@@ -8,13 +8,6 @@
 namespace komorebi {
 namespace {
 
-constexpr PassDesc kPasses[] = {
-    {"Combined", 4, PassRule::kMean},
-    {"Depth", 1, PassRule::kFirstSample},
-    {"Normal", 3, PassRule::kMean},
-    {"Debug Sample Count", 1, PassRule::kCount},
-};
-
 /// Bits that the number of samples may take of a sum's 62. Two fixed sizes, so that parts of one
 /// render (sample ranges) nearly always share a scale and can be added exactly.
 int sample_bits(const Settings& s) {
@@ -28,50 +21,81 @@ double power_of_two_scale(double bound, int bits) {
   return std::ldexp(1.0, bits - 5 - exponent);
 }
 
-bool asks_for(const Settings& settings, const char* name) {
-  return std::find(settings.passes.begin(), settings.passes.end(), name) != settings.passes.end();
+/// A thirty-second of what a channel of a quantity may come to.
+double bound_of(Quantity q, std::uint32_t channel, double radiance) {
+  switch (q) {
+    case Quantity::kEnvironment:
+    case Quantity::kCatcherLight:
+      return radiance;
+    case Quantity::kMatte:
+      return channel < 3 ? radiance : 1.0;
+    case Quantity::kUv:
+      return 2047.0;
+    case Quantity::kDenoisingDepth:
+      return 2097151.0;  // 67,000 km, to a thousandth of a millimetre
+    default:
+      return 1.0;
+  }
 }
 
 }  // namespace
 
-std::span<const PassDesc> known_passes() {
-  return kPasses;
-}
-
-const PassDesc& Film::pass(const std::string& name) {
-  for (const PassDesc& p : kPasses) {
-    if (name == p.name) return p;
-  }
-  throw std::invalid_argument("there is no pass \"" + name + "\"");
-}
-
-Film::Film(const Rect& region, const Settings& settings, float max_radiance)
+Film::Film(const Rect& region, const Settings& settings, float max_radiance, bool catchers)
     : region_(region),
       first_sample_(settings.sample_offset),
       samples_(settings.samples),
-      keeps_normal_(asks_for(settings, "Normal")),
-      keeps_depth_(asks_for(settings, "Depth")),
+      layout_(make_pass_layout(settings.passes, catchers, settings.film_transparent)),
+      catchers_(catchers),
+      transparent_(settings.film_transparent),
+      shows_shadow_(std::find(settings.passes.begin(), settings.passes.end(), "Shadow Catcher") ==
+                    settings.passes.end()),
       cells_across_((region.x_max - 1) / kCellSize - region.x_min / kCellSize + 1),
       bands_((region.y_max - 1) / kCellSize - region.y_min / kCellSize + 1),
       combined_(4 * region.area()),
-      normal_(keeps_normal_ ? 3 * region.area() : 0),
-      depth_(keeps_depth_ ? region.area() : 0),
+      means_(layout_.means * region.area()),
+      firsts_(layout_.firsts * region.area()),
+      squares_(layout_.keeps_variance ? 9 * region.area() : 0),
       counts_(bands_.size() * cells_across_, 0) {
-  for (const std::string& name : settings.passes) pass(name);
   const int bits = 62 - sample_bits(settings);
   // Ambient occlusion is radiance under a sky of 1, whatever the world behind it.
-  radiance_scale_ = power_of_two_scale(std::max(1.0, double{max_radiance}), bits);
+  const double radiance = std::max(1.0, double{max_radiance});
+  radiance_scale_ = power_of_two_scale(radiance, bits);
   unit_scale_ = power_of_two_scale(1.0, bits);
   limit_ = std::ldexp(1.0, bits);
+  half_bits_ = bits / 2;
+  mean_scale_.resize(layout_.means);
+  for (std::size_t q = 0; q < kQuantities; ++q) {
+    const auto quantity = static_cast<Quantity>(q);
+    const std::int16_t place = layout_.place[q];
+    if (place == PassLayout::kNone || place >= layout_.means) continue;
+    for (std::uint32_t c = 0; c < channels_of(quantity); ++c) {
+      mean_scale_[static_cast<std::size_t>(place) + c] =
+          power_of_two_scale(bound_of(quantity, c, radiance), bits);
+    }
+  }
+  for (std::size_t k = 0; k < layout_.ids; ++k) mattes_[k].resize(counts_.size());
 }
 
 void Film::reset(TileSums& sums, std::size_t pixels) const {
   sums.combined.assign(4 * pixels, 0);
-  sums.normal.assign(keeps_normal_ ? 3 * pixels : 0, 0);
-  sums.depth.assign(keeps_depth_ ? pixels : 0, 0.0f);
+  sums.means.assign(layout_.means * pixels, 0);
+  sums.firsts.assign(layout_.firsts * pixels, 0.0f);
+  sums.squares.assign(layout_.keeps_variance ? 9 * pixels : 0, 0);
+  for (std::size_t k = 0; k < layout_.ids; ++k) sums.mattes[k].reset(pixels);
   sums.has_first = false;
   sums.samples = 0;
   sums.clamped = 0;
+}
+
+void Film::add_squares(const std::int64_t* quantised, std::uint64_t* sums) const {
+  const std::uint64_t low_bits = (std::uint64_t{1} << half_bits_) - 1;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto q = static_cast<std::uint64_t>(std::abs(quantised[c]));
+    const std::uint64_t a = q >> half_bits_, b = q & low_bits;
+    sums[3 * c] += a * a;
+    sums[3 * c + 1] += a * b;
+    sums[3 * c + 2] += b * b;
+  }
 }
 
 void Film::merge(Cells cells, const TileSums& sums) {
@@ -81,18 +105,27 @@ void Film::merge(Cells cells, const TileSums& sums) {
     Band& b = bands_[band(c.y_min)];
     const std::lock_guard lock(b.mutex);
     b.clamped += std::exchange(clamped, 0);
-    counts_[cell(c.x_min, c.y_min)] += sums.samples;
+    const std::size_t this_cell = cell(c.x_min, c.y_min);
+    counts_[this_cell] += sums.samples;
     for (std::uint32_t y = c.y_min; y < c.y_max; ++y, from += c.width()) {
       const std::size_t to = index(c.x_min, y);
-      for (std::size_t i = 0; i < 4 * c.width(); ++i) {
-        combined_[4 * to + i] += sums.combined[4 * from + i];
+      const auto add = [&](auto& film, const auto& tile, std::size_t channels) {
+        for (std::size_t i = 0; i < channels * c.width(); ++i) {
+          film[channels * to + i] += tile[channels * from + i];
+        }
+      };
+      add(combined_, sums.combined, 4);
+      add(means_, sums.means, layout_.means);
+      if (layout_.keeps_variance) add(squares_, sums.squares, 9);
+      if (sums.has_first) {
+        std::copy_n(&sums.firsts[layout_.firsts * from], layout_.firsts * c.width(),
+                    &firsts_[layout_.firsts * to]);
       }
-      if (keeps_normal_) {
-        for (std::size_t i = 0; i < 3 * c.width(); ++i) {
-          normal_[3 * to + i] += sums.normal[3 * from + i];
+      for (std::size_t k = 0; k < layout_.ids; ++k) {
+        for (std::uint32_t x = 0; x < c.width(); ++x) {
+          mattes_[k][this_cell].add(pixel_in_cell(c.x_min + x, y), sums.mattes[k].of(from + x));
         }
       }
-      if (sums.has_first) std::copy_n(&sums.depth[from], c.width(), &depth_[to]);
     }
   }
 }
@@ -122,9 +155,13 @@ std::uint64_t Film::clamped_samples() const {
 }
 
 std::size_t Film::byte_count() const {
-  return (combined_.size() + normal_.size()) * sizeof(std::int64_t) +
-         depth_.size() * sizeof(float) + counts_.size() * sizeof(std::uint32_t) +
-         bands_.size() * sizeof(Band);
+  std::size_t mattes = 0;
+  for (const auto& cells : mattes_) {
+    for (const MatteCell& c : cells) mattes += sizeof(MatteCell) + c.byte_count();
+  }
+  return (combined_.size() + means_.size()) * sizeof(std::int64_t) +
+         squares_.size() * sizeof(std::uint64_t) + firsts_.size() * sizeof(float) +
+         counts_.size() * sizeof(std::uint32_t) + bands_.size() * sizeof(Band) + mattes;
 }
 
 }  // namespace komorebi

@@ -51,6 +51,7 @@ std::uint32_t choose_light_samples(const RenderContext& given, ThreadPool& pool,
                                    const Cancel& cancel) {
   RenderContext context = given;
   context.seed = 0;
+  context.passes = {};
   const double pixels = 4.0 * context.camera.film_center_x * context.camera.film_center_y;
   const PixelGrid grid(context.camera, std::min(kPoints, pixels / kPixelsPerPoint));
   if (grid.size() < kFewestPoints) return kAutomaticLightSamples;

@@ -20,12 +20,12 @@ HWY_INLINE void store(const Vec3Lanes& v, float* const (&columns)[3], std::size_
 /// Calls sample(shared, first point, bits x, bits y, where the result goes) for all rays of all
 /// points; `prepare` works out what the rays of points share.
 template <class Prepare, class Sample>
-HWY_INLINE void for_each_ray(const LightBlock& block, const Prepare& prepare,
-                             const Sample& sample) {
+HWY_INLINE void for_each_ray(const RenderContext& context, const LightBlock& block,
+                             const Prepare& prepare, const Sample& sample) {
   const TagU du;
   const std::uint32_t light_hash =
       dimension_hash(static_cast<std::uint32_t>(kDimensionVertex) +
-                     static_cast<std::uint32_t>(kVertexLightDirection));
+                     static_cast<std::uint32_t>(context.light_dimension));
   for (std::size_t p = 0; p < block.point_count; p += hn::Lanes(du)) {
     const PairSampler sampler(hn::LoadU(du, block.pixel_seed + p), light_hash);
     const Uint first = hn::LoadU(du, block.first_index + p);
@@ -38,9 +38,9 @@ HWY_INLINE void for_each_ray(const LightBlock& block, const Prepare& prepare,
   }
 }
 
-void ambient(const RenderContext&, const LightBlock& block) {
+void ambient(const RenderContext& context, const LightBlock& block) {
   for_each_ray(
-      block, [&](std::size_t p) HWY_ATTR { return FrameLanes(load(block.normal, p)); },
+      context, block, [&](std::size_t p) HWY_ATTR { return FrameLanes(load(block.normal, p)); },
       [&](const FrameLanes& frame, std::size_t p, Uint x, Uint y, std::size_t to) HWY_ATTR {
         const Vec3Lanes direction = frame.to_world(
             cosine_hemisphere_disk_lanes(to_unit_float_lanes(x), to_unit_float_lanes(y)));
@@ -76,7 +76,7 @@ void product(const RenderContext& context, const LightBlock& block) {
     steps.begin();
   };
   for_each_ray(
-      block,
+      context, block,
       [&](std::size_t p) HWY_ATTR {
         return octahedral_cell_lanes(times(m, load(block.normal, p)), context.product.bins);
       },

@@ -90,6 +90,19 @@ void Mesh::take_materials(const MeshInput& in, ThreadPool& pool, const Cancel& c
          [&](std::size_t face) { return static_cast<std::uint16_t>(in.face2material[face]); });
 }
 
+void Mesh::take_uvs(const MeshInput& in, ThreadPool& pool, const Cancel& cancel) {
+  if (in.corner2uv.empty()) return;
+  tri2uv_.resize(6 * std::size_t{triangle_count()});
+  const auto& corners = geometry_->tri2corner;
+  for_each_index(tri2uv_.size() / 2, pool, cancel, [&](std::size_t i) {
+    const std::size_t corner = corners.empty() ? i : corners[i];
+    for (std::size_t k = 0; k < 2; ++k) {
+      const float value = in.corner2uv[2 * corner + k];
+      tri2uv_[2 * i + k] = std::isfinite(value) ? value : 0.0f;
+    }
+  });
+}
+
 std::shared_ptr<const Mesh> Mesh::build(const MeshInput& in, Builder builder, ThreadPool& pool,
                                         const Cancel& cancel, const Mesh* same_geometry) {
   check_mesh(in, pool);
@@ -108,6 +121,7 @@ std::shared_ptr<const Mesh> Mesh::build(const MeshInput& in, Builder builder, Th
   }
   mesh->take_normals(in, pool, cancel);
   mesh->take_materials(in, pool, cancel);
+  mesh->take_uvs(in, pool, cancel);
   return mesh;
 }
 
@@ -129,6 +143,7 @@ std::shared_ptr<const Mesh> Mesh::flattened(const Mat4d& matrix, ThreadPool& poo
   std::shared_ptr<Mesh> mesh(new Mesh);
   mesh->name_ = name_;
   mesh->geometry_ = geometry;
+  mesh->tri2uv_ = tri2uv_;
   mesh->tri2material_ = tri2material_;  // normals have no image under a flat matrix: flat shading
   return mesh;
 }
@@ -151,6 +166,7 @@ MeshView Mesh::view() const {
   view.tri2normal = tri2normal_;
   view.tri2smooth = tri2smooth_.empty() ? nullptr : tri2smooth_.data();
   view.tri2material = tri2material_.empty() ? nullptr : tri2material_.data();
+  view.tri2uv = tri2uv_.empty() ? nullptr : tri2uv_.data();
   view.tree = tree().view();
   view.clusters = tree().clusters.data();
   return view;
@@ -158,7 +174,7 @@ MeshView Mesh::view() const {
 
 std::size_t Mesh::byte_count() const {
   return sizeof(Mesh) + geometry_->byte_count() + bytes(normals_) + bytes(every_corner_) +
-         bytes(tri2smooth_) + bytes(tri2material_);
+         bytes(tri2smooth_) + bytes(tri2material_) + bytes(tri2uv_);
 }
 
 }  // namespace komorebi

@@ -45,6 +45,7 @@ class Mesh {
   Mesh() = default;
   void take_normals(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
   void take_materials(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
+  void take_uvs(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
 
   std::string name_;
   std::shared_ptr<const MeshGeometry> geometry_;
@@ -53,6 +54,7 @@ class Mesh {
   Array<std::uint32_t> every_corner_;          // 0, 1, 2 …
   Array<std::uint8_t> tri2smooth_;
   Array<std::uint16_t> tri2material_;
+  Array<float> tri2uv_;  // [triangles][3][2]
 };
 
 }  // namespace komorebi

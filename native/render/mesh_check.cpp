@@ -114,6 +114,9 @@ void check_mesh(const MeshInput& in, ThreadPool& pool) {
   if (!in.face2smooth.empty() && in.face2smooth.size() != faces) {
     refuse(in.name, "smooth_faces must have one entry a face");
   }
+  if (!in.corner2uv.empty() && in.corner2uv.size() != 2 * in.corner2vtx.size()) {
+    refuse(in.name, "corner_uvs must have one row a corner");
+  }
   if (!in.face2material.empty() && in.face2material.size() != faces) {
     refuse(in.name, "face_materials must have one entry a face");
   }

@@ -21,6 +21,7 @@ struct MeshInput {
   std::span<const float> vtx2normal;            ///< [vertices][3]; neither: every face is flat
   std::span<const std::uint8_t> face2smooth;    ///< [faces]; empty: every face is smooth
   std::span<const std::int32_t> face2material;  ///< [faces]; empty: slot 0
+  std::span<const float> corner2uv;             ///< [corners][2]; empty: no UV map
 };
 
 /// What of a mesh decides where rays hit: positions, triangles and the tree over them. Apart from

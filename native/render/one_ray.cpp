@@ -1,7 +1,9 @@
 #include "render/one_ray.h"
 
 #include "bvh/traverse.h"
+#include "render/ambient.h"
 #include "render/light.h"
+#include "render/pass_row.h"
 
 namespace komorebi {
 
@@ -25,33 +27,82 @@ PixelSample background(const RenderContext& context, const Vec3& direction) {
   return result;
 }
 
-PixelSample seen_surface(const Vec3& normal, float depth) {
-  PixelSample result;
-  result.alpha = 1.0f;
-  result.depth = depth;
-  result.normal = normal;
-  return result;
+namespace {
+
+/// Calls visit(drawn, visible) for the rays that could bring light to a point.
+template <class Visit>
+void for_each_light_ray(const RenderContext& context, const SurfacePoint& point, const Hit& hit,
+                        const Sampler& sampler, std::uint32_t sample, float time,
+                        const Visit& visit) {
+  for (std::uint32_t j = 0; j < context.light_samples; ++j) {
+    const LightSample drawn =
+        sample_light(context, point, sampler, sample * context.light_samples + j);
+    if (drawn.contribution == Vec3(0.0f)) continue;
+    const Ray ray = light_ray(context, point, hit, drawn.direction, time);
+    visit(drawn, !occluded_scalar(context.scene, ray));
+  }
 }
 
+/// The light that a shadow catcher would get if there were nothing but shadow catchers.
+Vec3 light_alone(const RenderContext& given, const SurfacePoint& point, const Hit& hit,
+                 const Sampler& sampler, std::uint32_t sample, float time) {
+  RenderContext context = given;
+  context.light_mask <<= kMaskCatcherShift;
+  Vec3 radiance(0.0f);
+  for_each_light_ray(context, point, hit, sampler, sample, time,
+                     [&](const LightSample& drawn, bool visible) {
+                       if (visible) radiance += drawn.contribution;
+                     });
+  return radiance / static_cast<float>(context.light_samples);
+}
+
+}  // namespace
+
 PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::uint32_t y,
-                          std::uint32_t sample) {
+                          std::uint32_t sample, float* row) {
+  const PassLayout& layout = context.passes;
+  clear_row(layout, row);
   const Ray ray = start_ray(context, x, y, sample);
   const Hit hit = intersect_scalar(context.scene, ray);
-  if (!hit.valid()) return background(context, ray.direction);
-
+  if (!hit.valid() || is_holdout(context, hit)) {
+    PixelSample result;
+    if (!hit.valid()) {
+      result = background(context, ray.direction);
+      put_environment(context, ray.direction, row);
+    }
+    put_matte(layout, result, row);
+    return result;
+  }
   const SurfacePoint point = surface_point(context.scene, hit, ray);
   const Sampler sampler(context.seed, x, y);
-  PixelSample result = seen_surface(point.normal, camera_depth(context.camera, point.position));
-  for (std::uint32_t j = 0; j < context.light_samples; ++j) {
-    const LightSample light =
-        sample_light(context, point, sampler, sample * context.light_samples + j);
-    if (light.contribution == Vec3(0.0f)) continue;
-    if (occluded_scalar(context.scene, light_ray(context, point, hit, light.direction, ray.time))) {
-      continue;
-    }
-    result.radiance += light.contribution;
-  }
+  put_surface(context, hit, ray, point.normal, camera_depth(context.camera, point.position), sample,
+              row);
+  PixelSample result;
+  result.alpha = 1.0f;
+  const AmbientPasses of_light = passes_of_light_rays(context);
+  for_each_light_ray(context, point, hit, sampler, sample, ray.time,
+                     [&](const LightSample& drawn, bool visible) {
+                       if (!visible) return;
+                       result.radiance += drawn.contribution;
+                       add_ambient(layout, of_light, drawn.direction, drawn.contribution.x, row);
+                     });
   result.radiance /= static_cast<float>(context.light_samples);
+  for (const AmbientCast& cast : ambient_casts(context)) {
+    for_each_light_ray(cast.context, point, hit, sampler, sample, ray.time,
+                       [&](const LightSample& drawn, bool visible) {
+                         if (!visible) return;
+                         add_ambient(layout, cast.passes, drawn.direction, drawn.contribution.x,
+                                     row);
+                       });
+  }
+  if (layout.keeps_ambient()) finish_ambient(context, row);
+  if (!is_catcher(context, hit.instance)) {
+    put_matte(layout, result, row);
+  } else {
+    put_environment(context, ray.direction, row);
+    layout.put(row, Quantity::kCatcherLight,
+               light_alone(context, point, hit, sampler, sample, ray.time));
+  }
   return result;
 }
 

@@ -73,6 +73,7 @@ void Scene::add_instances(std::span<const InstanceInput> instances, const std::s
   if (inputs_.size() + instances.size() >= kNone) {
     throw std::invalid_argument("more instances than 32-bit indices can count");
   }
+  for (const InstanceInput& i : instances) has_catchers_ |= (i.flags & kInstanceShadowCatcher) != 0;
   inputs_.insert(inputs_.end(), instances.begin(), instances.end());
 }
 
@@ -100,6 +101,23 @@ void Scene::set_camera(const CameraDesc& camera) {
   has_camera_ = true;
 }
 
+void Scene::set_tables(SceneTables tables) {
+  require_open();
+  const auto& begin = tables.slot_begin;
+  const bool covers = begin.empty() ? tables.slots.empty()
+                                    : begin.front() == 0 && begin.back() == tables.slots.size();
+  if (!covers || !std::is_sorted(begin.begin(), begin.end())) {
+    throw std::invalid_argument("the lists of material slots do not cover the slots in order");
+  }
+  for (const std::uint32_t material : tables.slots) {
+    if (material >= tables.materials.size()) {
+      throw std::invalid_argument("a material slot names material " + std::to_string(material) +
+                                  " of " + std::to_string(tables.materials.size()));
+    }
+  }
+  tables_ = std::move(tables);
+}
+
 EnvironmentView Scene::environment() const {
   return environment_ ? environment_->view(strength_, texture_from_world_)
                       : constant_environment(world_color_);
@@ -114,9 +132,11 @@ void Scene::place(const InstanceInput& input, ThreadPool& pool, const Cancel& ca
   std::shared_ptr<const Mesh> mesh = meshes_[input.mesh];
   InstanceView instance;
   instance.mesh = input.mesh;
-  instance.mask = input.mask;
+  instance.mask = input.mask & kMaskRays;
+  if (input.flags & kInstanceShadowCatcher) instance.mask |= instance.mask << kMaskCatcherShift;
   instance.flags = input.flags;
   instance.object_index = input.object_index;
+  instance.material_slots = input.material_slots;
   Mat3d linear(input.world_from_object);
   Mat3d inverse;
   Vec3d position = Vec3d(input.world_from_object[3]);

@@ -11,6 +11,7 @@
 #include "render/camera.h"
 #include "render/environment.h"
 #include "render/mesh.h"
+#include "render/scene_tables.h"
 
 namespace komorebi {
 
@@ -21,6 +22,7 @@ struct InstanceInput {
   std::uint32_t object_index = 0;
   std::uint32_t mask = kMaskAll;
   std::uint32_t flags = 0;
+  std::uint32_t material_slots = 0;  ///< which list of SceneTables
 };
 
 /// Meshes, instances, world and camera; filled, then committed once, then read only.
@@ -41,6 +43,8 @@ class Scene {
   void set_world_environment(std::shared_ptr<const Environment> environment, double strength,
                              const Mat3d& texture_from_world);
   void set_camera(const CameraDesc& camera);
+  /// Throws std::invalid_argument when lists of slots name what is not there.
+  void set_tables(SceneTables tables);
 
   /// Builds the tree over instances. Throws Cancelled; after it the scene can only be dropped.
   void commit(ThreadPool& pool, const Cancel& cancel);
@@ -52,6 +56,9 @@ class Scene {
   bool has_camera() const { return has_camera_; }
   EnvironmentView environment() const;
   bool world_is_uniform() const { return !environment_; }
+  const SceneTables& tables() const { return tables_; }
+  /// Whether an instance is a shadow catcher: known when the instances are.
+  bool has_catchers() const { return has_catchers_; }
   /// An upper bound of the radiance that the world sends along any ray.
   float max_radiance() const;
 
@@ -75,6 +82,7 @@ class Scene {
 
   bool committed_ = false;
   bool has_camera_ = false;
+  bool has_catchers_ = false;
   std::vector<std::shared_ptr<const Mesh>> meshes_;
   std::vector<InstanceInput> inputs_;
   Vec3 world_color_{0.0f};
@@ -82,6 +90,7 @@ class Scene {
   double strength_ = 1.0;
   Mat3d texture_from_world_{1.0};
   CameraDesc camera_desc_;
+  SceneTables tables_;
 
   Vec3d origin_{0.0};
   std::vector<std::shared_ptr<const Mesh>> traced_meshes_;  // meshes_, then the flattened ones

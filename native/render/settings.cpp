@@ -45,6 +45,8 @@ void check_settings(const Settings& s, std::uint32_t width, std::uint32_t height
   }
   require(std::isfinite(s.filter_width) && s.filter_width >= 0.01f && s.filter_width <= 10.0f,
           "filter_width must be 0.01 to 10 pixels");
+  require(std::isfinite(s.mist_start) && std::isfinite(s.mist_depth) && s.mist_depth >= 0.0f,
+          "mist_start and mist_depth must be finite, mist_depth not negative");
   require(s.tile_size >= 8 && s.tile_size <= 1024, "tile_size must be 8 to 1024 pixels");
   require(s.threads <= 1024, "threads must be 0 (automatic) to 1024");
   if (s.has_region) {

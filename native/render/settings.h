@@ -11,6 +11,8 @@ namespace komorebi {
 
 enum class Method : std::uint32_t { kAmbientOcclusion, kWorldLight };
 enum class AoSampling : std::uint32_t { kCosine, kUniform };
+/// How mist grows with distance: Blender's names.
+enum class MistFalloff : std::uint32_t { kQuadratic, kLinear, kInverseQuadratic };
 enum class EnvironmentSampling : std::uint32_t { kMis, kCosine, kEnvironment, kProduct };
 
 /// A rectangle of full-frame pixels, half open; row 0 at the bottom.
@@ -48,6 +50,9 @@ struct Settings {
   float filter_width = 1.5f;    ///< pixels
   bool use_progressive = true;  ///< refine the whole frame, not one tile to its end
   bool film_transparent = false;
+  float mist_start = 5.0f;   ///< metres from the camera
+  float mist_depth = 25.0f;  ///< metres from there to full mist
+  MistFalloff mist_falloff = MistFalloff::kQuadratic;
   std::uint32_t threads = 0;     ///< 0: one per core
   std::uint32_t tile_size = 64;  ///< pixels
   bool has_region = false;       ///< false: the whole frame

@@ -110,7 +110,7 @@ bool measure_sky_visibility(const RenderContext& given, ThreadPool& pool, const 
           batch.push_ray(frame.to_world(cosine_hemisphere_disk(u)), context.light_distance);
         }
       }
-      const RayBundles bundles = batch.bundles(kMaskShadow);
+      const RayBundles bundles = batch.bundles(context.light_mask);
       bits.resize((bundles.ray_count() + 31) / 32);
       occluded(context.scene, bundles, bits.data());
       for (std::uint32_t i = 0; i < bundles.ray_count(); ++i) {

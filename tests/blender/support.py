@@ -2,6 +2,7 @@
 
 import contextlib
 import ctypes
+import json
 import os
 import shutil
 import subprocess
@@ -77,6 +78,31 @@ def read(path):
         bpy.data.images.remove(image)
 
 
+def render_layers(folder, name="layers"):
+    """Renders into a multilayer EXR: its channels by name ("ViewLayer.Depth.Z"), row 0 at the
+    bottom, and its metadata."""
+    settings = bpy.context.scene.render.image_settings
+    if hasattr(settings, "media_type"):  # from 5.0
+        settings.media_type = "MULTI_LAYER_IMAGE"
+    settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
+    settings.exr_codec = "NONE"
+    path = folder / f"{name}.exr"
+    bpy.context.scene.render.filepath = str(path)
+    bpy.ops.render.render(write_still=True)
+    return read_layers(path)
+
+
+def read_layers(path):
+    """The channels of an EXR file by name, row 0 at the bottom, and its metadata."""
+    python = HERE.parents[1] / "build" / "venv" / "test" / "bin" / "python"
+    done = process([python, HERE / "read_exr.py", path])  # OpenEXR beside Blender's own may clash
+    assert done.code == 0, done
+    with np.load(path.with_suffix(".npz")) as arrays:
+        channels = {name: arrays[name] for name in arrays.files}
+    metadata = json.loads(path.with_suffix(".json").read_text())
+    return channels, metadata
+
+
 @contextlib.contextmanager
 def captured(name):
     """Collects what the add-on hands to `module.function` ("driver.native_scene.build")."""
@@ -112,7 +138,8 @@ def exported_picture(name):
     """The pass `name` of a render as it was handed to Blender [height, width, channels]."""
     from komorebi import passes
 
-    channels = next(p.channels for p in passes.PASSES if p.name == name)
+    enabled = passes.enabled_passes(bpy.context.scene, bpy.context.view_layer)
+    channels = next(p.channels for p in enabled if p.name == name)
     with captured("compat.set_rect") as written:
         bpy.ops.render.render()
     return [pixels for (_, pixels), _ in written if pixels.shape[2] == channels][-1]

@@ -10,7 +10,7 @@ def counts(data):
     result = {}
     for group in data.instances:
         for index in group.object_index:
-            name = data.object_names[index]
+            name = data.objects[index].name
             result[name] = result.get(name, 0) + 1
     return result
 

@@ -163,7 +163,7 @@ inline std::vector<float> render(const std::shared_ptr<const Scene>& scene,
   }
   if (!session.error().empty()) throw std::runtime_error(session.error());
   const Rect region = session.settings().region;
-  std::vector<float> picture(Film::pass(pass).channels * region.area());
+  std::vector<float> picture(find_pass(pass).channels * region.area());
   session.film().read(pass, region, picture.data());
   return picture;
 }
@@ -185,7 +185,7 @@ inline std::vector<float> render_with_breaks(const std::shared_ptr<const Scene>&
   }
   EXPECT_GT(breaks, 0);
   const Rect region = session.settings().region;
-  std::vector<float> picture(Film::pass("Combined").channels * region.area());
+  std::vector<float> picture(find_pass("Combined").channels * region.area());
   session.film().read("Combined", region, picture.data());
   return picture;
 }

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
 from ..scene_data import SceneData
 from .camera import export_camera
 from .instance import export_instances
 from .unsupported import warn_unsupported
+from .wanted import Wanted
 from .world import export_world
 
 
-def export_scene(engine: Any, depsgraph: Any, view: str) -> SceneData:
-    """Everything that the view layer of `depsgraph` shows at its frame, seen by stereo `view`."""
+def export_scene(
+    engine: Any, depsgraph: Any, view: str, sources: Collection[str] = ()
+) -> SceneData:
+    """Everything that the view layer of `depsgraph` shows at its frame, seen by stereo `view`.
+
+    `sources` are the core's passes that are kept, which decide what they need to know.
+    """
     scene = depsgraph.scene
     warn_unsupported(engine, depsgraph)
     # A view layer without its sky has no world at all, neither seen nor as a light.
@@ -20,5 +27,5 @@ def export_scene(engine: Any, depsgraph: Any, view: str) -> SceneData:
     data = SceneData(
         camera=export_camera(engine, depsgraph, view), world=export_world(engine, world)
     )
-    export_instances(engine, depsgraph, data)
+    export_instances(engine, depsgraph, data, Wanted.by(sources))
     return data

@@ -10,10 +10,12 @@ import numpy as np
 
 from .. import compat, reporting
 from ..errors import RenderCancelled
-from ..scene_data import InstanceData, MeshData, SceneData
+from ..scene_data import InstanceData, MeshData, ObjectData, SceneData
+from .materials import MaterialExporter
 from .mesh import export_mesh
 from .names import name_of
 from .visibility import Visibility
+from .wanted import Wanted
 
 UNSUPPORTED_TYPES = {
     "CURVES": "hair curves", "POINTCLOUD": "a point cloud", "VOLUME": "a volume",
@@ -30,11 +32,15 @@ class _Group:
     objects: list[int] = field(default_factory=list)
     masks: list[int] = field(default_factory=list)
     flags: list[int] = field(default_factory=list)
+    slots: list[int] = field(default_factory=list)
 
 
-def export_instances(engine: Any, depsgraph: Any, data: SceneData) -> None:
-    """Fills meshes, instances, object names and what was ignored into `data`."""
+def export_instances(engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted) -> None:
+    """Fills meshes, instances, objects, materials and what was ignored into `data`."""
+    if not depsgraph.view_layer.use_solid:  # Blender's switch for surfaces, whatever they are
+        return
     visibility = Visibility(depsgraph)
+    materials = MaterialExporter(depsgraph.view_layer, data.materials)
     key2mesh: dict[int, int] = {}  # −1: no surface
     object2index: dict[int, int] = {}
     groups: list[_Group] = []
@@ -58,20 +64,22 @@ def export_instances(engine: Any, depsgraph: Any, data: SceneData) -> None:
         if mesh is None:
             if engine.test_break():
                 raise RenderCancelled
-            mesh = key2mesh[key] = _add_mesh(obj, data.meshes)
+            mesh = key2mesh[key] = _add_mesh(obj, data.meshes, wanted)
             if mesh >= 0:
                 groups.append(_Group())
         if mesh < 0:
             continue
         if pointer not in object2index:
-            object2index[pointer] = len(data.object_names)
-            data.object_names.append(name_of(original))
+            object2index[pointer] = len(data.objects)
+            data.objects.append(_object_data(original))
         group = groups[mesh]
         # foreach_get('matrix_world') on all is faster, and loses 220 bytes for each instance of
         # particles and geometry nodes (3.4, 4.5); converting whole matrices is 8 times slower.
         row_x, row_y, row_z, _ = instance.matrix_world
         group.rows += row_x[:] + row_y[:] + row_z[:]
         group.objects.append(object2index[pointer])
+        if wanted.materials:
+            group.slots.append(materials.slots_of(obj))
         if visibility.matters:
             mask, flags = visibility.of(instance, original)
             group.masks.append(mask)
@@ -83,9 +91,16 @@ def export_instances(engine: Any, depsgraph: Any, data: SceneData) -> None:
     data.ignored = dict(ignored)
 
 
-def _add_mesh(obj: Any, meshes: list[MeshData]) -> int:
+def _object_data(original: Any) -> ObjectData:
+    root = original
+    while root.parent is not None:
+        root = root.parent
+    return ObjectData(name_of(original), original.pass_index, name_of(root))
+
+
+def _add_mesh(obj: Any, meshes: list[MeshData], wanted: Wanted) -> int:
     with compat.mesh_of(obj) as mesh:
-        exported = export_mesh(mesh, name_of(obj))
+        exported = export_mesh(mesh, name_of(obj), wanted.uvs)
     if exported is None:
         return -1
     meshes.append(exported)
@@ -112,4 +127,5 @@ def _build(group: _Group, mesh: int, name: str) -> InstanceData:
         object_index=np.array(group.objects, np.uint32),
         mask=np.array(group.masks, np.uint32) if group.masks else None,
         flags=np.array(group.flags, np.uint32) if group.flags else None,
+        material_slots=np.array(group.slots, np.uint32) if group.slots else None,
     )

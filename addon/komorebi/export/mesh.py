@@ -12,7 +12,7 @@ from ..scene_data import IntArray, MeshData
 MAX_NATIVE_CORNERS = 4  # the core triangulates triangles and quads by Blender's own rule
 
 
-def export_mesh(mesh: Any, name: str) -> MeshData | None:
+def export_mesh(mesh: Any, name: str, with_uvs: bool = False) -> MeshData | None:
     """The arrays of an evaluated mesh; None when it has no face."""
     if not len(mesh.polygons):
         return None
@@ -29,6 +29,8 @@ def export_mesh(mesh: Any, name: str) -> MeshData | None:
         else:
             by_vertex = compat.vertex_normals(mesh)
 
+    uvs = compat.corner_uvs(mesh) if with_uvs else None
+
     if order is not None:
         if tri2corner is not None:
             new_corner = np.zeros(len(verts), np.int32)
@@ -36,6 +38,7 @@ def export_mesh(mesh: Any, name: str) -> MeshData | None:
             tri2corner = new_corner[tri2corner]
         verts = verts[order]
         by_corner = None if by_corner is None else by_corner[order]
+        uvs = None if uvs is None else uvs[order]
 
     flat = by_corner is None and by_vertex is None
     return MeshData(
@@ -49,6 +52,7 @@ def export_mesh(mesh: Any, name: str) -> MeshData | None:
         vertex_normals=by_vertex,
         smooth_faces=None if flat or smooth.all() else smooth,
         face_materials=compat.face_materials(mesh),
+        corner_uvs=uvs,
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from .. import compat
 from ..denoise.run import GUIDE
 from ..passes import Pass, sources
 
@@ -13,17 +14,29 @@ _SEED_STEP = 0x9E3779B1
 _SEED_MASK = 0x7FFFFFFF
 
 
+def layer_samples(scene: Any, view_layer: Any) -> int:
+    """The samples of a view layer: its own if it has any, unless Cycles' setting says otherwise."""
+    own: int = view_layer.samples
+    of_scene: int = scene.komorebi.samples
+    rule = getattr(compat.cycles_or(scene, None), "use_layer_samples", "USE")
+    if own == 0 or rule == "IGNORE":
+        return of_scene
+    return min(own, of_scene) if rule == "BOUNDED" else own
+
+
 def export_settings(
-    scene: Any, passes: list[Pass], region: tuple[int, int, int, int]
+    scene: Any, view_layer: Any, passes: list[Pass], region: tuple[int, int, int, int]
 ) -> dict[str, Any]:
     """`region` is (x_min, y_min, x_max, y_max) in pixels of the full frame."""
+    samples = layer_samples(scene, view_layer)
     settings, render = scene.komorebi, scene.render
+    mist = scene.world.mist_settings if scene.world is not None else None
     seed = settings.seed
     if settings.use_animated_seed:
         seed = (seed + scene.frame_current * _SEED_STEP) & _SEED_MASK
-    return {
+    exported = {
         "method": settings.method,
-        "samples": settings.samples,
+        "samples": samples,
         "light_samples": settings.light_samples,
         "sample_offset": settings.sample_offset,
         "seed": seed,
@@ -45,3 +58,8 @@ def export_settings(
         "region": region,
         "passes": sources(passes, *([GUIDE] if settings.use_denoising else [])),
     }
+    if mist is not None:
+        exported |= {
+            "mist_start": mist.start, "mist_depth": mist.depth, "mist_falloff": mist.falloff,
+        }  # fmt: skip
+    return exported

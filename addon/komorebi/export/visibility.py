@@ -47,7 +47,7 @@ class Visibility:
         flags = FLAG_SHADOW_CATCHER if obj.is_shadow_catcher else 0
         if obj.is_holdout or obj.holdout_get(view_layer=self._view_layer):
             flags |= FLAG_HOLDOUT
-        if obj.indirect_only_get(view_layer=self._view_layer):
+        elif obj.indirect_only_get(view_layer=self._view_layer):  # a holdout is never that
             mask &= ~RAY_CAMERA
         return mask, flags
 

@@ -103,7 +103,7 @@ TEST_F(Adaptive, ThreadsTilesAndOrderDoNotShow) {
 TEST_F(Adaptive, ABorderIsTheCropOfTheWhole) {
   for (const char* pass : {"Combined", "Debug Sample Count"}) {
     settings_ = adaptive_settings();
-    const std::size_t channels = Film::pass(pass).channels;
+    const std::size_t channels = find_pass(pass).channels;
     const auto whole = render(scene_, settings_, pass);
     settings_.has_region = true;
     settings_.region = {37, 11, 101, 64};  // through the middle of cells

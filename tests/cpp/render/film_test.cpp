@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -19,16 +20,18 @@ PixelSample grey(float value) {
   return s;
 }
 
-void add_one(Film& film, std::uint32_t index, const PixelSample& sample) {
+void add_one(Film& film, std::uint32_t index, const PixelSample& sample,
+             std::vector<float> row = {}) {
+  row.resize(film.layout().size());
   TileSums sums;
   film.reset(sums, 1);
-  film.add(sums, 0, index, sample);
+  film.add(sums, 0, index, sample, row.data());
   sums.samples = 1;
   film.merge({&kPixel, 1}, sums);
 }
 
 std::vector<float> read(const Film& film, const char* pass) {
-  std::vector<float> out(Film::pass(pass).channels);
+  std::vector<float> out(find_pass(pass).channels);
   film.read(pass, kPixel, out.data());
   return out;
 }
@@ -65,7 +68,10 @@ TEST(Film, TheLargestSumDoesNotOverflow) {
   Film film(kPixel, settings, 1000.0f);
   TileSums sums;
   film.reset(sums, 1);
-  for (std::uint32_t i = 0; i < settings.samples; ++i) film.add(sums, 0, i, grey(31999.0f));
+  const std::vector<float> row(film.layout().size());
+  for (std::uint32_t i = 0; i < settings.samples; ++i) {
+    film.add(sums, 0, i, grey(31999.0f), row.data());
+  }
   sums.samples = settings.samples;
   film.merge({&kPixel, 1}, sums);
   EXPECT_FLOAT_EQ(read(film, "Combined")[0], 31999.0f);
@@ -85,9 +91,9 @@ TEST(Film, DepthIsTheFirstSamplesInAnyOrder) {
   settings.sample_offset = 10;
   Film film(kPixel, settings, 1.0f);
   for (const std::uint32_t i : {12u, 10u, 11u}) {
-    PixelSample s = grey(1.0f);
-    s.depth = static_cast<float>(i);
-    add_one(film, i, s);
+    std::vector<float> row(film.layout().size());
+    film.layout().put(row.data(), Quantity::kDepth, static_cast<float>(i));
+    add_one(film, i, grey(1.0f), row);
   }
   EXPECT_EQ(read(film, "Depth")[0], 10.0f);
 }
@@ -100,7 +106,7 @@ TEST(Film, KeepsNoMoreThanIsAskedFor) {
   EXPECT_LT(film.byte_count(), 33 * region.area());
   TileSums sums;
   film.reset(sums, 64);
-  EXPECT_TRUE(sums.normal.empty() && sums.depth.empty());
+  EXPECT_TRUE(sums.means.empty() && sums.firsts.empty());
   std::vector<float> out(3 * region.area());
   EXPECT_THROW(film.read("Depth", region, out.data()), std::invalid_argument);
   EXPECT_THROW(film.read("Normal", region, out.data()), std::invalid_argument);
@@ -114,9 +120,11 @@ TEST(Film, ReadsAnyRectangleOnAnyNumberOfThreads) {
     TileSums sums;
     film.reset(sums, cell.area());
     for (std::size_t i = 0; i < cell.area(); ++i) {
-      PixelSample s = grey(static_cast<float>(cell.x_min + i % cell.width()) / 256.0f);
-      s.normal = Vec3(0.0f, 0.0f, static_cast<float>(cell.y_min + i / cell.width()) / 512.0f);
-      film.add(sums, i, 0, s);
+      const PixelSample s = grey(static_cast<float>(cell.x_min + i % cell.width()) / 256.0f);
+      std::vector<float> row(film.layout().size());
+      const float height = static_cast<float>(cell.y_min + i / cell.width()) / 512.0f;
+      film.layout().put(row.data(), Quantity::kNormal, Vec3(0.0f, 0.0f, height));
+      film.add(sums, i, 0, s, row.data());
     }
     sums.samples = 1;
     film.merge({&cell, 1}, sums);
@@ -130,6 +138,43 @@ TEST(Film, ReadsAnyRectangleOnAnyNumberOfThreads) {
     const auto y = static_cast<float>(part.y_min + i / part.width());
     ASSERT_EQ(rgba[4 * i + 1], x / 256.0f);
     ASSERT_EQ(normal[3 * i + 2], y / 512.0f);
+  }
+}
+
+TEST(Film, VarianceIsThatOfTheSamples) {
+  Settings settings;
+  settings.passes = {"Combined", "Variance"};
+  settings.samples = 1000;
+  std::mt19937 random(11);
+  std::lognormal_distribution<float> radiance(0.0f, 1.0f);
+  Film film(kPixel, settings, 3000.0f);
+  double sum = 0.0, squares = 0.0;
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    const float value = i == 500 ? 60000.0f : radiance(random);  // a sun among dim samples
+    add_one(film, i, grey(value));
+    sum += double{value};
+    squares += double{value} * double{value};
+  }
+  const double expected = (squares - sum * sum / 1000.0) / 999.0;
+  for (const float variance : read(film, "Variance"))
+    EXPECT_NEAR(variance, expected, 1e-6 * expected);
+  Film flat(kPixel, settings, 1.0f);
+  for (std::uint32_t i = 0; i < 7; ++i) add_one(flat, i, grey(0.3f));
+  EXPECT_LT(read(flat, "Variance")[0], 1e-9f);
+}
+
+TEST(Film, MattesRankByCoverageInAnyOrder) {
+  Settings settings;
+  settings.passes = {"Combined", "CryptoObject00", "CryptoObject01"};
+  const float a = 1.5f, b = 0.25f, c = -7.0f;
+  std::vector<float> seen = {a, b, b, c, c, c, 0.0f, 0.0f};  // 0: nothing
+  std::mt19937 random(2);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    std::shuffle(seen.begin(), seen.end(), random);
+    Film film(kPixel, settings, 1.0f);
+    for (std::uint32_t i = 0; i < seen.size(); ++i) add_one(film, i, grey(1.0f), {seen[i]});
+    EXPECT_EQ(read(film, "CryptoObject00"), (std::vector<float>{c, 0.375f, b, 0.25f}));
+    EXPECT_EQ(read(film, "CryptoObject01"), (std::vector<float>{a, 0.125f, 0.0f, 0.0f}));
   }
 }
 

@@ -1,0 +1,57 @@
+"""Which material each slot of an object has, as far as passes tell of materials."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..scene_data import MaterialData, Materials
+from .names import name_of
+
+# What Cycles calls the surface of a face without material, and so what a Cryptomatte has.
+NO_MATERIAL = "default_surface"
+
+
+class MaterialExporter:
+    """Collects the materials of one view layer; its override takes the place of all."""
+
+    def __init__(self, view_layer: Any, materials: Materials) -> None:
+        self._override = view_layer.material_override
+        self._materials = materials
+        self._index: dict[int, int] = {}  # of materials by address; 0: no material
+        self._slots: dict[tuple[int, ...], int] = {}
+        self._known: dict[tuple[int, int], int] = {}
+
+    def slots_of(self, obj: Any) -> int:
+        """The index of the list of slots that an evaluated object of type MESH has."""
+        key = (obj.as_pointer(), obj.data.as_pointer())
+        known = self._known.get(key)
+        if known is None:
+            slots = tuple(self._material(m) for m in self._surfaces(obj))
+            known = self._slots.setdefault(slots, len(self._slots))
+            if known == len(self._materials.slots):
+                self._materials.slots.append(slots)
+            self._known[key] = known
+        return known
+
+    def _surfaces(self, obj: Any) -> list[Any]:
+        if self._override is not None:
+            return [self._override]
+        of_object, of_data = obj.material_slots, obj.data.materials
+        surfaces = []
+        for i in range(max(1, len(of_object), len(of_data))):
+            material = of_data[i] if i < len(of_data) else None
+            if i < len(of_object) and of_object[i].link == "OBJECT":
+                material = of_object[i].material
+            surfaces.append(material)
+        return surfaces
+
+    def _material(self, material: Any) -> int:
+        pointer = 0 if material is None else material.original.as_pointer()
+        index = self._index.get(pointer)
+        if index is None:
+            index = self._index[pointer] = len(self._materials.materials)
+            self._materials.materials.append(
+                MaterialData(NO_MATERIAL, 0) if material is None
+                else MaterialData(name_of(material), material.pass_index)
+            )  # fmt: skip
+        return index

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "render/context.h"
+#include "render/film.h"
+
+namespace komorebi {
+
+/// The row of floats that a camera sample leaves for the passes (PassLayout), as it is when the
+/// sample has seen nothing.
+void clear_row(const PassLayout& layout, float* row);
+
+/// What is known of a surface in view before it is lit; `normal` and `depth` are its own.
+void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, const Vec3& normal,
+                 float depth, std::uint32_t sample, float* row);
+
+/// The world that a camera ray sees.
+void put_environment(const RenderContext& context, const Vec3& direction, float* row);
+
+/// What of the picture is no shadow catcher.
+void put_matte(const PassLayout& layout, const PixelSample& sample, float* row);
+
+}  // namespace komorebi

@@ -1,0 +1,123 @@
+#include "render/passes.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace komorebi {
+namespace {
+
+using enum PassRule;
+
+constexpr PassDesc kPasses[] = {
+    {"Combined", 4, kMean},
+    {"Depth", 1, kFirstSample, Quantity::kDepth},
+    {"Position", 3, kFirstSample, Quantity::kPosition},
+    {"Object Index", 1, kFirstSample, Quantity::kObjectIndex},
+    {"Material Index", 1, kFirstSample, Quantity::kMaterialIndex},
+    {"Instance Index", 1, kFirstSample, Quantity::kInstanceIndex},
+    {"Normal", 3, kMean, Quantity::kNormal},
+    {"UV", 3, kMean, Quantity::kUv},
+    {"Mist", 1, kMean, Quantity::kMist},
+    {"Environment", 3, kMean, Quantity::kEnvironment},
+    {"Diffuse Color", 3, kMean, Quantity::kDiffuseColor},
+    {"Denoising Normal", 3, kMean, Quantity::kDenoisingNormal},
+    {"Denoising Depth", 1, kMean, Quantity::kDenoisingDepth},
+    {"Ambient Occlusion", 1, kMean, Quantity::kAmbientOcclusion},
+    {"Sky Visibility", 1, kMean, Quantity::kSkyVisibility},
+    {"Bent Normal", 3, kDirection, Quantity::kBentNormal},
+    {"Shadow Catcher", 3, kCatcher},
+    {"Variance", 3, kVariance},
+    {"Debug Sample Count", 1, kCount},
+};
+
+constexpr PassDesc kMatteParts[kMattes] = {
+    {"CryptoObject", 4, PassRule::kMatte, Quantity::kMatteObject},
+    {"CryptoMaterial", 4, PassRule::kMatte, Quantity::kMatteMaterial},
+    {"CryptoAsset", 4, PassRule::kMatte, Quantity::kMatteAsset},
+};
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+bool is_part_of(const std::string& name, const std::string& matte) {
+  return name.size() == matte.size() + 2 && name.starts_with(matte) &&
+         is_digit(name[name.size() - 2]) && is_digit(name.back()) &&
+         matte_part(name) < kMaxMatteRanks / 2;
+}
+
+bool in_group(Quantity q, Quantity first, Quantity last) {
+  return q >= first && q <= last;
+}
+
+}  // namespace
+
+std::span<const PassDesc> known_passes() {
+  return kPasses;
+}
+
+const PassDesc& find_pass(const std::string& name) {
+  for (const PassDesc& p : kPasses) {
+    if (name == p.name) return p;
+  }
+  for (const PassDesc& p : kMatteParts) {
+    if (is_part_of(name, p.name)) return p;
+  }
+  throw std::invalid_argument("there is no pass \"" + name + "\"");
+}
+
+std::uint32_t matte_part(const std::string& name) {
+  return static_cast<std::uint32_t>(10 * (name[name.size() - 2] - '0') + (name.back() - '0'));
+}
+
+std::uint32_t channels_of(Quantity q) {
+  if (q == Quantity::kCatcherLight) return 3;
+  if (q == Quantity::kMatte) return 4;
+  for (const PassDesc& p : kPasses) {
+    if (p.quantity == q) return p.channels;
+  }
+  return 1;  // an id
+}
+
+PassLayout::PassLayout() {
+  std::fill(std::begin(place), std::end(place), kNone);
+}
+
+bool PassLayout::keeps_ambient() const {
+  return keeps(Quantity::kAmbientOcclusion) || keeps(Quantity::kSkyVisibility) ||
+         keeps(Quantity::kBentNormal);
+}
+
+PassLayout make_pass_layout(const std::vector<std::string>& passes, bool catchers,
+                            bool film_transparent) {
+  PassLayout layout;
+  bool wanted[kQuantities] = {};
+  const auto want = [&](Quantity q) { wanted[static_cast<std::size_t>(q)] = true; };
+  for (const std::string& name : passes) {
+    const PassDesc& pass = find_pass(name);
+    if (pass.quantity != Quantity::kCount) want(pass.quantity);
+    layout.keeps_variance |= pass.rule == PassRule::kVariance;
+  }
+  if (catchers) {
+    want(Quantity::kCatcherLight);
+    want(Quantity::kMatte);
+    if (!film_transparent) want(Quantity::kEnvironment);
+  }
+  std::uint32_t next = 0;
+  const auto place_group = [&](Quantity first, Quantity last) {
+    const std::uint32_t begin = next;
+    for (std::size_t q = 0; q < kQuantities; ++q) {
+      const auto quantity = static_cast<Quantity>(q);
+      if (!wanted[q] || !in_group(quantity, first, last)) continue;
+      layout.place[q] = static_cast<std::int16_t>(next);
+      next += channels_of(quantity);
+    }
+    return static_cast<std::uint16_t>(next - begin);
+  };
+  layout.means = place_group(Quantity::kNormal, Quantity::kMatte);
+  layout.firsts = place_group(Quantity::kDepth, Quantity::kInstanceIndex);
+  layout.ids = place_group(Quantity::kMatteObject, Quantity::kMatteAsset);
+  return layout;
+}
+
+}  // namespace komorebi

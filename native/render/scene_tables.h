@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace komorebi {
+
+/// What passes tell about an object. The ids of Cryptomattes are the bits of floats.
+struct ObjectInfo {
+  float pass_index = 0.0f;
+  std::uint32_t matte = 0, matte_asset = 0;
+};
+
+struct MaterialInfo {
+  float pass_index = 0.0f;
+  std::uint32_t matte = 0;
+};
+
+/// What indices of a scene stand for. All may be empty: then nothing is known.
+struct SceneTables {
+  std::vector<ObjectInfo> objects;      ///< of InstanceInput::object_index
+  std::vector<MaterialInfo> materials;  ///< of the entries of `slots`
+  /// List l of material slots is slots[slot_begin[l]] to slots[slot_begin[l + 1] − 1]; a face with
+  /// a slot beyond the last has the last.
+  std::vector<std::uint32_t> slot_begin, slots;
+
+  ObjectInfo object(std::uint32_t index) const {
+    return index < objects.size() ? objects[index] : ObjectInfo{};
+  }
+  MaterialInfo material(std::uint32_t list, std::uint32_t slot) const {
+    if (std::size_t{list} + 1 >= slot_begin.size()) return {};
+    const std::uint32_t begin = slot_begin[list], count = slot_begin[list + 1] - begin;
+    if (count == 0) return {};
+    return materials[slots[begin + (slot < count ? slot : count - 1)]];
+  }
+};
+
+}  // namespace komorebi
