@@ -82,10 +82,17 @@ def check(a: np.ndarray, b: np.ndarray) -> None:
             raise ValueError(f"{bad} values of the {name} engine's are not finite")
 
 
+def differing(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Differences of the means of blocks [seed, row, column], and which are more than chance."""
+    difference, p = welch(a, b)
+    enough = np.maximum(ABSOLUTE, RELATIVE * np.abs(a.mean(axis=0)))
+    return difference, (p < P_LIMIT) & (np.abs(difference) > enough)
+
+
 def judge(a: np.ndarray, b: np.ndarray, known: np.ndarray | None = None) -> Verdict:
     """Compare two float arrays [seed, row, column, RGBA] of equal size.
 
-    Where `known`, bool [row, column], marks a pixel of a block, its disagreement is excused, and it
+    Light and alpha are judged alike. Where `known`, bool [row, column], marks a pixel of a block, its disagreement is excused, and it
     does not enter the means. ValueError for unequal sizes, too few seeds, values not finite.
     """
     check(a, b)
@@ -94,16 +101,15 @@ def judge(a: np.ndarray, b: np.ndarray, known: np.ndarray | None = None) -> Verd
     counted = np.ones(blocks_a.shape[1:], dtype=bool)
     if known is not None:
         counted = blocks(known[None])[0] == 0.0
-    difference, p = welch(blocks_a, blocks_b)
-    enough = np.maximum(ABSOLUTE, RELATIVE * np.abs(blocks_a.mean(axis=0)))
+    difference, differs = differing(blocks_a, blocks_b)
+    alpha_difference, alpha_differs = differing(blocks(a[..., 3]), blocks(b[..., 3]))
+    differs |= alpha_differs
     means_a, means_b = (
         x[:, counted].mean(axis=1) if counted.any() else x[:, 0, 0] for x in (blocks_a, blocks_b)
     )
     gap = abs(float(means_b.mean() - means_a.mean()))
     error = float(np.sqrt(means_a.var(ddof=1) / len(a) + means_b.var(ddof=1) / len(b)))
     rounding = ROUNDING * max(abs(float(means_a.mean())), ROUNDING)
-    alpha = blocks(a[..., 3]).mean(axis=0) - blocks(b[..., 3]).mean(axis=0)
-    differs = (p < P_LIMIT) & (np.abs(difference) > enough)
     return Verdict(
         disagrees=differs & counted,
         excused=differs & ~counted,
@@ -111,5 +117,5 @@ def judge(a: np.ndarray, b: np.ndarray, known: np.ndarray | None = None) -> Verd
         mean_b=float(means_b.mean()),
         mean_errors=0.0 if gap <= rounding else gap / max(error, 1e-300),
         largest=float(np.abs(difference[counted]).max(initial=0.0)),
-        alpha_difference=float(np.abs(alpha).max()),
+        alpha_difference=float(np.abs(alpha_difference).max()),
     )

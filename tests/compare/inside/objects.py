@@ -17,15 +17,6 @@ KINDS = {
     "GPENCIL": "grease pencil",
     "GREASEPENCIL": "grease pencil",
 }
-SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META", "EMPTY"}
-# Flags of objects that Komorebi does not honour yet, with the value that switches them off.
-FLAGS = {
-    "is_holdout": False,
-    "is_shadow_catcher": False,
-    "visible_camera": True,
-    "visible_diffuse": True,
-    "visible_shadow": True,
-}
 
 
 def lamps_off() -> list[str]:
@@ -37,18 +28,26 @@ def lamps_off() -> list[str]:
     return [f"{len(bpy.data.lights)} lamps"] if bpy.data.lights else []
 
 
+def visible_alike() -> list[str]:
+    """Makes visibility to shadow and diffuse rays the same where the engines ask different ones.
+
+    Under an even sky Cycles sends diffuse rays alone, but ambient occlusion asks who casts shadows;
+    under a map Cycles weights both.
+    """
+    mixed = [t for t in bpy.data.objects if t.visible_diffuse != t.visible_shadow]
+    for thing in mixed:
+        settle(thing, "visible_diffuse", thing.visible_shadow)
+    return [f"{len(mixed)} objects made as visible to diffuse rays as to shadow rays"] if mixed else []
+
+
 def objects_off() -> list[str]:
-    """Hide objects of kinds and undo flags that Komorebi lacks; shadow-terminator offsets 0
+    """Hide objects of kinds that Komorebi lacks; shadow-terminator offsets 0
     everywhere."""
     found: Counter[str] = Counter()
     for thing in bpy.data.objects:
         if thing.type in KINDS:
             settle(thing, "hide_render", True)
             found[f"{KINDS[thing.type]} objects"] += 1
-        for flag, off in FLAGS.items() if thing.type in SURFACES else ():
-            if flag in thing.bl_rna.properties and getattr(thing, flag) != off:
-                settle(thing, flag, off)
-                found[f"objects with {flag} {not off}"] += 1
         settle_all(
             getattr(thing, "cycles", None),
             shadow_terminator_offset=0.0,
@@ -62,20 +61,6 @@ def objects_off() -> list[str]:
         if particles.type == "HAIR" and particles.render_type == "PATH":
             settle(particles, "render_type", "NONE")
             found["hair particle settings"] += 1
-    return [f"{count} {name}" for name, count in sorted(found.items())]
-
-
-def collections_off(layer: Any) -> list[str]:
-    """Undo holdout and indirect-only collections of a view layer."""
-    found: Counter[str] = Counter()
-    waiting = [layer.layer_collection]
-    while waiting:
-        branch = waiting.pop()
-        waiting.extend(branch.children)
-        for flag in ("holdout", "indirect_only"):
-            if getattr(branch, flag):
-                setattr(branch, flag, False)
-                found[f"collections with {flag}"] += 1
     return [f"{count} {name}" for name, count in sorted(found.items())]
 
 

@@ -10,6 +10,10 @@ import bpy
 from compare.inside import camera, engines, objects, render_settings, world
 
 
+# A shadow on a catcher is a ratio of two means, which has an error of its own at few samples.
+CATCHER_SAMPLES = 8
+
+
 def open_file(path: str) -> list[str]:
     """Open a .blend without its interface and scripts; complaints about missing parts become
     notes."""
@@ -31,16 +35,22 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
     notes = render_settings.set_size(scene, job["longest"])
     render_settings.set_output(scene)
     layer, more = render_settings.choose_view_layer(scene, job["view_layer"])
-    notes += more + objects.lamps_off() + objects.objects_off() + objects.collections_off(layer)
+    notes += more + objects.lamps_off() + objects.objects_off()
     layer.material_override = engines.clay(job["mode"], job["flat"])
     notes += world.set_world(scene, job["mode"], job["world_image"])
+    if job["mode"] == "ao" or not world.is_even(scene.world):
+        notes += objects.visible_alike()
     scene.frame_set(scene.frame_current)  # the camera bound to a marker, and all drivers
     depsgraph = layer.depsgraph
     depsgraph.update()
     notes += camera.ensure_camera(scene, depsgraph)
     notes += objects.still_camera(scene.camera) + objects.unsupported_instances(depsgraph)
+    samples = job["samples"]
+    if any(thing.is_shadow_catcher for thing in scene.objects):
+        samples *= CATCHER_SAMPLES
+        notes.append(f"shadow catchers: {CATCHER_SAMPLES} times the samples")
     if job["engine"] == "CYCLES":
-        engines.set_cycles(scene, job["samples"])
+        engines.set_cycles(scene, samples)
     else:
-        engines.set_komorebi(scene, job["samples"], job["mode"])
+        engines.set_komorebi(scene, samples, job["mode"])
     return scene, layer, notes
