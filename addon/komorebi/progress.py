@@ -7,6 +7,8 @@ from typing import Any
 
 import bpy
 
+CLOSED = 0.98  # share of rays for ambient occlusion that hit, from which a picture is black
+
 INTERVAL_WINDOW = 0.1  # seconds between two lines in a window
 INTERVAL_BACKGROUND = 1.0  # at least; in background each is a line in the log
 
@@ -57,6 +59,8 @@ def _decided(session: Any, state: Any) -> list[str]:
         parts.append(f"Noise threshold {resolved['adaptive_threshold']:.4g}")
     if state["mean_samples"] != state["samples"]:
         parts.append(f"{state['mean_samples']:.1f} samples a pixel")
+    if state["ambient_rays_blocked"] > CLOSED * state["ambient_rays"] > 0.0:
+        parts.append("Closed scene: nearly all occlusion rays hit, set AO Distance")
     return parts
 
 

@@ -130,6 +130,8 @@ py::dict progress(const Session& session) {
   d["elapsed"] = p.elapsed;
   d["remaining"] = p.remaining;
   d["rays"] = p.rays;
+  d["ambient_rays"] = p.ambient.cast;
+  d["ambient_rays_blocked"] = p.ambient.blocked;
   d["clamped_samples"] = p.clamped_samples;
   return d;
 }
@@ -197,7 +199,7 @@ void bind_session(py::module_& module) {
           "progress", &progress,
           "sample (whole passes over the frame), samples, tile and tiles (of the pass that is on), "
           "mean_samples (a pixel), fraction, elapsed and remaining (seconds), rays, "
-          "clamped_samples.")
+          "ambient_rays and of them ambient_rays_blocked, clamped_samples.")
       .def_property_readonly(
           "resolved", &resolved,
           "What was automatic in the settings, decided: light_samples, and under "

@@ -33,6 +33,11 @@ std::uint64_t BatchIntegrator::ray_count() const {
   return count;
 }
 
+RayTally BatchIntegrator::ambient_tally() const {
+  if (context_.method == Method::kAmbientOcclusion) return light_caster_.tally();
+  return ambient_.empty() ? RayTally{} : ambient_.front().caster.tally();
+}
+
 void BatchIntegrator::start(std::size_t begin, std::size_t end, std::uint32_t first,
                             std::uint32_t samples) {
   paths_.clear();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <vector>
 
 #include "bvh/traverse.h"
@@ -7,6 +8,10 @@
 #include "render/surface_batch.h"
 
 namespace komorebi {
+
+struct RayTally {
+  std::uint64_t cast = 0, blocked = 0;
+};
 
 /// Draws and traces the light rays of a batch's surfaces, block by block. Its arrays grow once.
 class LightCaster {
@@ -16,6 +21,8 @@ class LightCaster {
 
   std::uint32_t block_size() const { return block_.capacity(); }
   std::uint64_t ray_count() const { return rays_; }
+  /// Rays of cast(), and those of them that something blocked.
+  RayTally tally() const { return tally_; }
 
   /// Calls visit(surface, direction, contribution, visible) for every ray of surfaces
   /// [begin, end), at most block_size() of them, that could bring light, in the order drawn.
@@ -24,6 +31,10 @@ class LightCaster {
             const Visit& visit) {
     draw(surfaces, begin, end);
     trace(surfaces, begin, end, context_.light_mask, first_ray_, places_, blocked_);
+    tally_.cast += places_.size();
+    for (const std::uint32_t word : blocked_) {
+      tally_.blocked += static_cast<std::uint64_t>(std::popcount(word));
+    }
     for (std::uint32_t p = 0; p < end - begin; ++p) {
       for (std::uint32_t k = first_ray_[p]; k < first_ray_[p + 1]; ++k) {
         const std::uint32_t place = places_[k];
@@ -97,6 +108,7 @@ class LightCaster {
   std::vector<std::uint32_t> first_ray_, places_, blocked_;  // of the rays traced: RayBundles
   std::vector<std::uint32_t> again_first_, again_, blocked_again_;
   std::uint64_t rays_ = 0;
+  RayTally tally_;
 };
 
 }  // namespace komorebi

@@ -116,6 +116,7 @@ void Session::work() {
   BatchIntegrator integrator(context_);
   TileSums sums;
   std::uint64_t counted = 0;
+  RayTally tallied;
   while (const auto item = schedule_.take(cancel)) {
     const Cells cells = *item->cells;
     bool done = false;
@@ -129,6 +130,10 @@ void Session::work() {
     }
     rays_ += integrator.ray_count() - counted;
     counted = integrator.ray_count();
+    const RayTally tally = integrator.ambient_tally();
+    ambient_cast_ += tally.cast - tallied.cast;
+    ambient_blocked_ += tally.blocked - tallied.blocked;
+    tallied = tally;
     schedule_.finish(*item, done, film_);
   }
 }
@@ -149,6 +154,7 @@ Progress Session::progress() const {
   Progress p;
   p.clamped_samples = film_.clamped_samples();
   p.rays = rays_;
+  p.ambient = {ambient_cast_, ambient_blocked_};
   p.samples = settings_.samples;
   p.tile = state.tile;
   p.tiles = state.tiles;

@@ -32,6 +32,7 @@ struct Progress {
   double elapsed = 0.0;       ///< seconds
   double remaining = 0.0;     ///< seconds, from the pace so far; 0 before the first tile
   std::uint64_t rays = 0;
+  RayTally ambient;  ///< rays for ambient occlusion, and those that hit something
   std::uint64_t clamped_samples = 0;
 };
 
@@ -87,7 +88,7 @@ class Session {
   Schedule schedule_;
   std::thread thread_;
 
-  std::atomic<std::uint64_t> rays_{0};
+  std::atomic<std::uint64_t> rays_{0}, ambient_cast_{0}, ambient_blocked_{0};
   mutable std::mutex mutex_;        // guards all below
   std::shared_ptr<Cancel> cancel_;  // one a run
   std::condition_variable over_changed_;

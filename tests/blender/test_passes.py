@@ -72,6 +72,7 @@ def furnished():
     world.node_tree.nodes["Background"].inputs[0].default_value = (0.5, 0.75, 1.0, 1.0)
     world.mist_settings.start, world.mist_settings.depth = 6.0, 12.0
     world.mist_settings.falloff = "LINEAR"
+    world.light_settings.distance = scene.komorebi.ao_distance = 2.0
     return scene
 
 

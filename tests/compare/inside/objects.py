@@ -37,7 +37,9 @@ def visible_alike() -> list[str]:
     mixed = [t for t in bpy.data.objects if t.visible_diffuse != t.visible_shadow]
     for thing in mixed:
         settle(thing, "visible_diffuse", thing.visible_shadow)
-    return [f"{len(mixed)} objects made as visible to diffuse rays as to shadow rays"] if mixed else []
+    return (
+        [f"{len(mixed)} objects made as visible to diffuse rays as to shadow rays"] if mixed else []
+    )
 
 
 def objects_off() -> list[str]:

@@ -9,7 +9,6 @@ import bpy
 
 from compare.inside import camera, engines, objects, render_settings, world
 
-
 # A shadow on a catcher is a ratio of two means, which has an error of its own at few samples.
 CATCHER_SAMPLES = 8
 
