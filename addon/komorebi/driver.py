@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import bpy
 
-from . import background, core, dump, jobs, metadata, native_scene, reporting
+from . import background, core, dump, jobs, memory, metadata, native_scene, reporting
 from .denoise import library as oidn
 from .denoise import run as denoise
 from .errors import RenderCancelled, RenderError
@@ -63,6 +63,8 @@ def export_frame(engine: Any, depsgraph: Any) -> Frame | None:
         raise RenderError("The render border holds no pixel")
     passes = enabled_passes(scene, depsgraph.view_layer)
     _warn_missing(engine, layer, passes)
+    pixels = (region[2] - region[0]) * (region[3] - region[1])
+    memory.require(pixels, passes, engine.resolution_x, engine.resolution_y)
     names = active_views(scene)
     settings = export_settings(scene, depsgraph.view_layer, passes, region)
     data = export_scene(engine, depsgraph, names[0], settings["passes"])

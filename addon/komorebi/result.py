@@ -17,6 +17,7 @@ from .scene_data import FloatArray
 Tile = tuple[int, int, int, int]
 Fields = dict[str, str]
 
+BAND_PIXELS = 1 << 23
 DUTY = 10.0  # showing tiles may take a tenth of the time
 
 
@@ -54,7 +55,12 @@ class ResultWriter:
 
         `fields` go into the file of the picture.
         """
-        self._write(session, (0, 0, self._width, self._height), self._passes, combined)
+        # In bands, so that a large picture is not held a third time on its way.
+        rows = max(1, BAND_PIXELS // self._width)
+        for y in range(0, self._height, rows):
+            height = min(rows, self._height - y)
+            band = None if combined is None else combined[y : y + height]
+            self._write(session, (0, y, self._width, height), self._passes, band)
         result = self._engine.get_result()
         for name, value in fields.items():
             result.stamp_data_add_field(name, value)

@@ -179,6 +179,8 @@ void bind_settings(py::module_& module) {
 
 void bind_session(py::module_& module) {
   module.attr("AUTOMATIC_LIGHT_SAMPLES") = kAutomaticLightSamples;
+  module.def("film_bytes_per_pixel", &Film::bytes_per_pixel, py::arg("passes"),
+             "Memory that a Session takes for each pixel, about.");
   bind_settings(module);
   py::class_<Session, std::shared_ptr<Session>>(
       module, "Session", "Renders a committed scene on threads of its own; it starts at once.")

@@ -154,6 +154,13 @@ std::uint64_t Film::clamped_samples() const {
   return clamped;
 }
 
+std::size_t Film::bytes_per_pixel(const std::vector<std::string>& passes) {
+  constexpr std::size_t kMatteBytes = 24;  // two ids
+  const PassLayout layout = make_pass_layout(passes, false, false);
+  return (4 + layout.means) * sizeof(std::int64_t) + layout.firsts * sizeof(float) +
+         (layout.keeps_variance ? 9 * sizeof(std::uint64_t) : 0) + layout.ids * kMatteBytes;
+}
+
 std::size_t Film::byte_count() const {
   std::size_t mattes = 0;
   for (const auto& cells : mattes_) {

@@ -71,6 +71,9 @@ class Film {
   /// Mean radiance and alpha of a cell's pixels so far, as [pixels][4]; one of cells_of(region()).
   void cell_means(const Rect& cell, float* out) const;
 
+  /// Of a film with these passes, about: Cryptomattes take what they find.
+  static std::size_t bytes_per_pixel(const std::vector<std::string>& passes);
+
   std::uint64_t clamped_samples() const;
   std::size_t byte_count() const;
 

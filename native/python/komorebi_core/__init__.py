@@ -17,6 +17,7 @@ from ._komorebi import (
     build_info,
     choose_builder,
     content_tags,
+    film_bytes_per_pixel,
     force_instruction_set,
     known_passes,
 )
@@ -34,6 +35,7 @@ __all__ = [
     "build_info",
     "choose_builder",
     "content_tags",
+    "film_bytes_per_pixel",
     "force_instruction_set",
     "known_passes",
 ]
