@@ -7,8 +7,11 @@
 
 namespace komorebi {
 
-/// What a mesh's primitives are; curves and points come behind the same records.
-enum class PrimitiveKind : std::uint32_t { kTriangle = 0 };
+/// What a mesh's primitives are; all come behind the same records.
+enum class PrimitiveKind : std::uint32_t { kTriangle = 0, kCurve = 1, kSphere = 2 };
+
+/// What a curve looks like: flat and turned to every ray, or round (core/curve.h).
+enum class CurveShape : std::uint32_t { kRibbon = 0, kThick = 1 };
 
 enum InstanceFlag : std::uint32_t {
   kInstanceHoldout = 1u << 0,
@@ -51,6 +54,15 @@ struct MeshView {
   std::uint32_t attribute_count = 0;
   TreeView tree;
   const std::byte* clusters = nullptr;  ///< leaves of the tree: bvh/triangle_cluster.h
+  // Curves and spheres instead of triangles; primitives are segments (of all curves), or points.
+  CurveShape shape = CurveShape::kRibbon;
+  std::uint32_t pieces = 1;                    ///< of a segment
+  std::uint32_t segment_parts = 1;             ///< leaves that a segment is spread over
+  std::uint32_t primitive_count = 0;           ///< segments, or points
+  std::uint32_t point_count = 0;               ///< keys of curves, or points
+  const float* points = nullptr;               ///< [point_count][4]: x, y, z, radius
+  const std::uint32_t* segment2key = nullptr;  ///< first key | bits of core/curve.h
+  const std::uint32_t* leaf2item = nullptr;    ///< leaves of the tree: CurveItem, or a point
 };
 
 /// One instance of a mesh.  world = world_from_local · local + position
