@@ -217,19 +217,19 @@ inline bool meet_ribbon(const Vec3d& middle_0, const Vec3d& side_0, const Vec3d&
   const Vec3d l0 = middle_0 + side_0, r0 = middle_0 - side_0;
   const Vec3d l1 = middle_1 + side_1, r1 = middle_1 - side_1;
   const auto edge = [](const Vec3d& a, const Vec3d& b) { return a.x * b.y - a.y * b.x; };
-  const double diagonal = edge(r0, l1);
-  if (diagonal >= 0.0) {  // the triangle l0, r0, l1
-    const double of_r0 = edge(l1, l0), of_l1 = edge(l0, r0);
-    const double sum = (diagonal + of_r0) + of_l1;
-    if (!(of_r0 >= 0.0 && of_l1 >= 0.0 && sum > 0.0)) return false;
-    *along = of_l1 / sum;
-    *v = 1.0 - 2.0 * (of_r0 / sum);
-  } else {  // the triangle r1, l1, r0
-    const double of_l1 = edge(r0, r1), of_r0 = edge(r1, l1);
-    const double sum = (of_l1 + of_r0) - diagonal;
-    if (!(of_l1 >= 0.0 && of_r0 >= 0.0 && sum > 0.0)) return false;
-    *along = 1.0 - of_r0 / sum;
-    *v = 2.0 * (of_l1 / sum) - 1.0;
+  const double diagonal = edge(r1, l0);
+  if (diagonal >= 0.0) {  // the triangle l0, r0, r1
+    const double of_l0 = edge(r0, r1), of_r1 = edge(l0, r0);
+    const double sum = (of_l0 + diagonal) + of_r1;
+    if (!(of_l0 >= 0.0 && of_r1 >= 0.0 && sum > 0.0)) return false;
+    *along = of_r1 / sum;
+    *v = 2.0 * (of_l0 / sum) - 1.0;
+  } else {  // the triangle l0, r1, l1
+    const double of_l0 = edge(r1, l1), of_r1 = edge(l1, l0);
+    const double sum = (of_l0 + of_r1) - diagonal;
+    if (!(of_l0 >= 0.0 && of_r1 >= 0.0 && sum > 0.0)) return false;
+    *along = 1.0 - of_l0 / sum;
+    *v = 1.0 - 2.0 * (of_r1 / sum);
   }
   return true;
 }

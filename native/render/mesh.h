@@ -47,6 +47,14 @@ class Mesh {
   }
   std::uint32_t degenerate_count() const { return tree().degenerate_count; }
   const MeshTree& tree() const { return geometry_->tree; }
+  std::size_t node_count() const {
+    return round_ ? round_->tree.nodes.size() : geometry_->tree.nodes.size();
+  }
+  std::uint32_t depth() const { return round_ ? round_->tree.depth : geometry_->tree.depth; }
+  /// Triangles, segments of curves, or points.
+  std::uint32_t primitive_count() const {
+    return round_ ? round_->primitive_count() : triangle_count();
+  }
   /// Which corners carry a triangle's UVs and normals, [triangles][3].
   std::vector<std::int32_t> tri2corner() const;
   std::size_t byte_count() const;

@@ -31,8 +31,8 @@ class Checker {
     for (std::size_t i = 0; i < radius.size(); ++i) {
       const bool finite = std::isfinite(xyz[3 * i]) && std::isfinite(xyz[3 * i + 1]) &&
                           std::isfinite(xyz[3 * i + 2]);
-      positions += finite ? 0 : 1;
-      radii += radius[i] >= 0.0f && radius[i] <= kMaxRadius ? 0 : 1;
+      positions += finite ? 0u : 1u;
+      radii += radius[i] >= 0.0f && radius[i] <= kMaxRadius ? 0u : 1u;
     }
     count(positions, "position is not finite", "positions are not finite");
     count(radii, "radius is negative or not finite", "radii are negative or not finite");
@@ -52,7 +52,7 @@ void check_curves(const CurvesInput& in) {
                    std::to_string(in.key2radius.size()));
   }
   std::size_t bad = 0;
-  for (std::size_t c = 0; c + 1 < offsets.size(); ++c) bad += offsets[c + 1] < offsets[c] ? 1 : 0;
+  for (std::size_t c = 0; c + 1 < offsets.size(); ++c) bad += offsets[c + 1] < offsets[c] ? 1u : 0u;
   checker.count(bad, "curve ends before it begins", "curves end before they begin");
   if (in.subdivisions > kMaxSubdivisions) {
     checker.refuse("subdivisions must be at most " + std::to_string(kMaxSubdivisions));
@@ -113,6 +113,7 @@ RoundGeometry RoundGeometry::transformed(const Mat4d& matrix, Builder builder, T
   RoundGeometry result;
   result.kind = kind;
   result.shape = shape;
+  result.subdivisions = subdivisions;
   result.pieces = pieces;
   result.segment_parts = segment_parts;
   result.segment2key = segment2key;
@@ -143,6 +144,7 @@ RoundGeometry build_curves(const CurvesInput& in, Builder builder, ThreadPool& p
   RoundGeometry geometry;
   geometry.kind = PrimitiveKind::kCurve;
   geometry.shape = in.shape;
+  geometry.subdivisions = in.subdivisions;
   geometry.pieces = in.shape == CurveShape::kRibbon ? (1u << in.subdivisions) + 1 : kThickPieces;
   geometry.take_points(in.key2xyz, in.key2radius, pool);
   std::size_t segments = 0;

@@ -34,6 +34,7 @@ inline constexpr std::uint32_t kMaxSubdivisions = 8;
 struct RoundGeometry {
   PrimitiveKind kind = PrimitiveKind::kCurve;
   CurveShape shape = CurveShape::kRibbon;
+  std::uint32_t subdivisions = 0;
   std::uint32_t pieces = 1, segment_parts = 1;
   Vec3d origin{0.0};
   Array<float> points;                ///< [keys or points][4]: x, y, z, radius

@@ -122,8 +122,8 @@ void curves_part(const Options& options) {
       const auto seconds = interleave(contenders, options.whole("rounds", 3));
       std::size_t met = 0, other = 0, blocked = 0, differing = 0;
       for (std::uint32_t i = 0; i < camera.size(); ++i) {
-        met += hits[i].valid() ? 1 : 0;
-        other += hits[i].primitive != theirs[i].primitive ? 1 : 0;
+        met += hits[i].valid() ? 1u : 0u;
+        other += hits[i].primitive != theirs[i].primitive ? 1u : 0u;
       }
       for (std::uint32_t i = 0; i < light.size(); ++i) {
         const unsigned a = (bits[i / 32] >> (i % 32)) & 1u, b = (their_bits[i / 32] >> (i % 32)) & 1u;

@@ -102,7 +102,7 @@ std::size_t expect_same_by_all(const SceneView& scene, const RayList& rays, std:
   std::size_t met = 0;
   for (std::uint32_t i = 0; i < rays.size(); ++i) {
     expected[i] = intersect_scalar(scene, rays[i]);
-    met += expected[i].valid() ? 1 : 0;
+    met += expected[i].valid() ? 1u : 0u;
     if (i >= searched) continue;
     const Hit brute = intersect_brute_force(scene, rays[i]);
     EXPECT_EQ(std::memcmp(&brute, &expected[i], sizeof(Hit)), 0)
@@ -167,14 +167,13 @@ Compared against_embree(const Curves& fur, double scale, std::uint32_t count) {
     const Hit theirs = embree.intersect(ray, !ribbon);
     ray.origin = Vec3(Vec3d(ray.origin) - scene->origin());
     const Hit ours = intersect_scalar(scene->view(), ray);
-    result.met += theirs.valid() ? 1 : 0;
+    result.met += theirs.valid() ? 1u : 0u;
     if (ours.primitive != theirs.primitive) {
       ++result.other;
     } else if (ours.valid()) {
-      result.far_apart += std::abs(ours.t - theirs.t) > 2e-5f ? 1 : 0;
-      result.u_apart += std::abs(ours.u - theirs.u) > 2e-3f ? 1 : 0;
-      // Which side of a ribbon is positive differs from Embree's: see Cycles' bitangent.
-      if (ribbon) result.v_apart += std::abs(ours.v - theirs.v) > 0.02f ? 1 : 0;
+      result.far_apart += std::abs(ours.t - theirs.t) > 2e-5f ? 1u : 0u;
+      result.u_apart += std::abs(ours.u - theirs.u) > 2e-3f ? 1u : 0u;
+      if (ribbon) result.v_apart += std::abs(ours.v - theirs.v) > 0.02f ? 1u : 0u;
     }
   }
   return result;
@@ -228,7 +227,9 @@ TEST(Sphere, IsTheClosedForm) {
       if (std::abs(disc) < 1e-5 * a * radius * radius) continue;  // grazing
       const Hit hit = intersect_scalar(scene->view(), ray);
       ASSERT_EQ(hit.valid(), disc > 0.0 && -b - std::sqrt(disc) > 0.0) << i;
-      if (hit.valid()) ASSERT_NEAR(double(hit.t), (-b - std::sqrt(disc)) / a, 1e-5) << i;
+      if (hit.valid()) {
+        ASSERT_NEAR(double(hit.t), (-b - std::sqrt(disc)) / a, 1e-5) << i;
+      }
       ray.origin = Vec3(middle + 0.3 * radius * numbers.cube());
       EXPECT_FALSE(occluded_scalar(scene->view(), ray)) << "a sphere has no inside";
     }
