@@ -21,6 +21,7 @@ import closed_forms
 import demo
 import features
 import settings
+import strands
 from common import save
 
 SCENES: dict[str, Callable[[], None]] = {
@@ -28,6 +29,7 @@ SCENES: dict[str, Callable[[], None]] = {
     **closed_forms.SCENES,
     **features.SCENES,
     **settings.SCENES,
+    **strands.SCENES,
 }
 
 
