@@ -39,6 +39,8 @@ def hair_particles() -> None:
     for k in range(4):
         turn = Matrix.Rotation(0.9 * k, 4, "Z") @ Matrix.Scale(0.7 + 0.2 * k, 4)
         copies("Tufts", stock, Matrix.Translation((-0.4 + 0.6 * k, -0.9 + 0.2 * k, 0.0)) @ turn)
+    stretch = Matrix.Diagonal((2.0, 0.5, 1.4, 1.0)) @ Matrix.Rotation(0.5, 4, "X")
+    copies("Stretched", stock, Matrix.Translation((1.8, -1.2, 0.0)) @ stretch)
     patch = add_mesh(
         "Patch", [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], [(0, 1, 2, 3)]
     )
@@ -90,7 +92,8 @@ def chain(tree: bpy.types.NodeTree, *kinds: str) -> list[bpy.types.Node]:
 
 
 def hair_curves() -> None:
-    """A hair curves object; and a mesh whose geometry nodes make curves beside its own faces."""
+    """A hair curves object whose nodes set the radius; and a mesh whose geometry nodes make curves
+    beside its own faces, which Blender hands on as legacy curves: no engine draws them."""
     empty_scene(320, 180)
     ground()
     bpy.ops.object.curves_random_add()

@@ -88,9 +88,16 @@ inline SurfacePoint round_surface_point(const InstanceView& instance, const Mesh
   point.position = Vec3(relative + place);
   const Vec3 error = product(absolute(instance.world_from_local), local_error) +
                      gamma(2) * glm::abs(point.position);
-  const Vec3d normal = glm::transpose(into_local) * at.normal;
+  // Cycles takes a sphere's normal to be where the point lies from its centre in the world.
+  const Vec3d normal = mesh.kind == PrimitiveKind::kSphere
+                           ? Mat3d(instance.world_from_local) * at.normal
+                           : glm::transpose(into_local) * at.normal;
   const double length = std::sqrt(glm::dot(normal, normal));
   point.normal = length > 0.0 ? Vec3(normal / length) : unit_or(-ray.direction, Vec3(0, 0, 1));
+  // Of a stretched sphere it may point away, and is turned round.
+  if (mesh.kind == PrimitiveKind::kSphere && glm::dot(point.normal, ray.direction) > 0.0f) {
+    point.normal = -point.normal;
+  }
   point.geometric_normal = point.normal;
   point.offset = glm::dot(glm::abs(point.normal), error);
   return point;
