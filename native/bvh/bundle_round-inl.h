@@ -22,11 +22,10 @@ class RoundRays {
   template <class ClosestOf>
   HWY_INLINE std::uint32_t meet(const MeshView& mesh, std::uint32_t instance, std::uint32_t leaf,
                                 std::uint32_t rays, const ClosestOf& closest) const {
-    const std::uint32_t item = mesh.leaf2item[leaf];
     std::uint32_t found = 0;
     for (; rays != 0; rays &= rays - 1) {
       const auto i = static_cast<std::uint32_t>(__builtin_ctz(rays));
-      if (test_round_item(mesh, ray_[i], self_[i], instance, item, closest(i))) found |= 1u << i;
+      if (test_round_leaf(mesh, ray_[i], self_[i], instance, leaf, closest(i))) found |= 1u << i;
     }
     return found;
   }
@@ -38,7 +37,7 @@ class RoundRays {
 
 /// Where a child of a tree over curves or points lies in memory.
 HWY_INLINE const void* round_child(const MeshView& mesh, std::uint32_t child) {
-  if (child & Waiting::kLeaf) return mesh.leaf2item + (child & ~Waiting::kLeaf);
+  if (child & Waiting::kLeaf) return mesh.leaves + (child & ~Waiting::kLeaf);
   return mesh.tree.nodes + child;
 }
 

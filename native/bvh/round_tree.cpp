@@ -1,9 +1,6 @@
 #include "bvh/round_tree.h"
 
 #include "bvh/wide_tree.h"
-#include "core/curve.h"
-#include "core/sphere.h"
-#include "parallel/array.h"
 
 namespace komorebi {
 
@@ -12,7 +9,7 @@ TreeView RoundTree::view() const {
 }
 
 std::size_t RoundTree::byte_count() const {
-  return nodes.byte_count() + leaf2item.byte_count();
+  return nodes.byte_count() + leaves.capacity() * sizeof(RoundLeaf);
 }
 
 RoundTree build_round_tree(const MeshView& set, Builder builder, ThreadPool& pool,
@@ -33,9 +30,18 @@ RoundTree build_round_tree(const MeshView& set, Builder builder, ThreadPool& poo
   WideTree wide = build_wide_tree(items, builder, pool, cancel);
   RoundTree tree;
   tree.nodes = std::move(wide.nodes);
-  tree.leaf2item = std::move(wide.leaves);
   tree.depth = wide.depth;
   tree.bounds = wide.bounds;
+  tree.grid = make_leaf_grid(wide.bounds);
+  MeshView with_grid = set;
+  with_grid.leaf_grid = tree.grid;
+  tree.leaves.resize(wide.leaves.size());
+  pool.for_each_chunk(tree.leaves.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    check(cancel);
+    for (std::size_t i = begin; i < end; ++i) {
+      tree.leaves[i] = make_round_leaf(with_grid, wide.leaves.data()[i]);
+    }
+  });
   return tree;
 }
 

@@ -3,16 +3,19 @@
 #include "bvh/topology.h"
 #include "bvh/wide_node.h"
 #include "core/scene_view.h"
+#include "core/round_leaf.h"
+#include "parallel/array.h"
 #include "parallel/late_array.h"
 #include "parallel/thread_pool.h"
 
 namespace komorebi {
 
 /// A set of curves or points as traversal reads it: wide nodes whose leaves are each one item
-/// (CurveItem, or a point), an entry of leaf2item. Keys and points are read where they are.
+/// (CurveItem, or a point). Keys and points are read where they are.
 struct RoundTree {
   LateArray<WideNode> nodes;
-  LateArray<std::uint32_t> leaf2item;
+  Array<RoundLeaf> leaves;
+  LeafGrid grid;
   std::uint32_t depth = 0;
   Aabb bounds;  ///< of all padded boxes, local space; empty if there is nothing to hit
 

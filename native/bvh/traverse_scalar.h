@@ -55,7 +55,7 @@ bool trace_round(const MeshView& mesh, std::uint32_t instance, const LocalRay& l
   const RoundRay round = make_round_ray(local, direction);
   const std::uint32_t self = instance == ray.self_instance ? ray.self_primitive : kNone;
   const auto visit = [&](std::uint32_t leaf) {
-    const bool found = test_round_item(mesh, round, self, instance, mesh.leaf2item[leaf], closest);
+    const bool found = test_round_leaf(mesh, round, self, instance, leaf, closest);
     return kAny && found;
   };
   return walk(mesh.tree, local.slab, local.range, closest->limit, visit);

@@ -18,7 +18,14 @@ enum InstanceFlag : std::uint32_t {
   kInstanceShadowCatcher = 1u << 1,
 };
 
-struct WideNode;  // bvh/wide_node.h
+struct WideNode;   // bvh/wide_node.h
+struct RoundLeaf;  // core/round_leaf.h
+
+/// Where the leaves of a tree over curves or points put theirs.
+struct LeafGrid {
+  Vec3 origin{0.0f};
+  Vec3 step{0.0f};
+};
 
 /// A named array on a mesh (UV map, colour): the table is there before the first reader.
 enum class AttributeDomain : std::uint32_t { kVertex, kCorner, kFace };
@@ -62,7 +69,8 @@ struct MeshView {
   std::uint32_t point_count = 0;               ///< keys of curves, or points
   const float* points = nullptr;               ///< [point_count][4]: x, y, z, radius
   const std::uint32_t* segment2key = nullptr;  ///< first key | bits of core/curve.h
-  const std::uint32_t* leaf2item = nullptr;    ///< leaves of the tree: CurveItem, or a point
+  const RoundLeaf* leaves = nullptr;           ///< of the tree
+  LeafGrid leaf_grid;
 };
 
 /// One instance of a mesh.  world = world_from_local · local + position

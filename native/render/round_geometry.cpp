@@ -76,7 +76,8 @@ void RoundGeometry::fill(MeshView& view) const {
   view.points = points.data();
   view.segment2key = segment2key.data();
   view.tree = tree.view();
-  view.leaf2item = tree.leaf2item.data();
+  view.leaves = tree.leaves.data();
+  view.leaf_grid = tree.grid;
 }
 
 void RoundGeometry::take_points(std::span<const float> xyz, std::span<const float> radius,
