@@ -21,6 +21,7 @@ import closed_forms
 import demo
 import features
 import settings
+import strands
 import visibility
 from common import save
 
@@ -30,6 +31,7 @@ SCENES: dict[str, Callable[[], None]] = {
     **features.SCENES,
     **settings.SCENES,
     **visibility.SCENES,
+    **strands.SCENES,
 }
 
 

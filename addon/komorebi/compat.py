@@ -187,3 +187,38 @@ def world_nodes(world: Any) -> Any | None:
     if VERSION < (5, 0, 0) and not world.use_nodes:
         return None
     return world.node_tree
+
+
+CURVE_SUBDIVISIONS = 2  # Cycles' default
+MAX_CURVE_SUBDIVISIONS = 8  # the core's limit; nobody sees the pieces long before
+
+
+def curve_shape(scene: Any) -> tuple[str, int]:
+    """RIBBONS or THICK, and the subdivisions of ribbons: Cycles' settings, or its defaults where
+    that add-on is off. Newer releases' THICK_LINEAR is drawn as THICK."""
+    settings = getattr(scene, "cycles_curves", None)
+    if settings is None:
+        return "RIBBONS", CURVE_SUBDIVISIONS
+    shape = "RIBBONS" if settings.shape == "RIBBONS" else "THICK"
+    return shape, min(settings.subdivisions, MAX_CURVE_SUBDIVISIONS)
+
+
+def point_attribute(data: Any, name: str, kind: str, columns: int) -> FloatArray | None:
+    """The attribute of curves' or a cloud's points [points, columns]; None when there is none.
+
+    kind: FLOAT or FLOAT_VECTOR, as Blender's data_type.
+    """
+    attribute = data.attributes.get(name)
+    if attribute is None or attribute.domain != "POINT" or attribute.data_type != kind:
+        return None
+    result = np.empty(len(attribute.data) * columns, np.float32)
+    attribute.data.foreach_get("value" if columns == 1 else "vector", result)
+    return result.reshape(-1, columns)
+
+
+def curve_offsets(data: Any) -> IntArray:
+    """The first point of each curve and, at the end, the number of points [curves + 1]."""
+    result = np.zeros(len(data.curves) + 1, np.int32)
+    if len(data.curves):
+        data.curve_offset_data.foreach_get("value", result)
+    return result

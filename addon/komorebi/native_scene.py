@@ -14,7 +14,15 @@ from numpy.typing import NDArray
 
 from . import cache
 from .cryptomatte import name_id
-from .scene_data import CameraData, EnvironmentImage, MeshData, SceneData
+from .scene_data import (
+    AnyMesh,
+    CameraData,
+    CurveData,
+    EnvironmentImage,
+    MeshData,
+    PointData,
+    SceneData,
+)
 
 
 @dataclass(slots=True)
@@ -47,12 +55,12 @@ def load(core: Any, data: SceneData, expected_rays: float, threads: int, cancel:
     """
     # Normals are no part of the key: Blender 3.4 adds them up in the order of its threads, so that
     # the same mesh has other ones each time, which would build its tree anew.
-    keys = [b"mesh" + _digest(core, mesh.geometry(), threads) for mesh in data.meshes]
+    keys = [_mesh_key(core, mesh, threads) for mesh in data.meshes]
     image = data.world.image
     image_key = None if image is None else _image_key(core, image, threads)
     cache.make_room({*keys, image_key})
-    triangles = sum(len(m.corner_verts) - 2 * (len(m.face_offsets) - 1) for m in data.meshes)
-    builder = core.choose_builder(triangles, expected_rays)
+    primitives = sum(_primitive_count(mesh) for mesh in data.meshes)
+    builder = core.choose_builder(primitives, expected_rays)
     parts = Parts(builder=builder)
     for index, mesh in enumerate(data.meshes):
         known = cache.get(keys[index], KnownMesh)
@@ -124,9 +132,31 @@ def _digest(core: Any, arrays: Iterable[NDArray[Any] | None], threads: int) -> b
     return digest.digest()
 
 
+def _mesh_key(core: Any, mesh: AnyMesh, threads: int) -> bytes:
+    kind = b"mesh" if isinstance(mesh, MeshData) else b"points"
+    if isinstance(mesh, CurveData):
+        kind = f"curves {mesh.shape} {mesh.subdivisions}".encode()
+    return kind + _digest(core, mesh.geometry(), threads)
+
+
+def _primitive_count(mesh: AnyMesh) -> int:
+    if isinstance(mesh, MeshData):
+        return len(mesh.corner_verts) - 2 * (len(mesh.face_offsets) - 1)
+    return len(mesh.radii)
+
+
 def _native_mesh(
-    core: Any, mesh: MeshData, builder: str, threads: int, cancel: Any, same_geometry: Any | None
+    core: Any, mesh: AnyMesh, builder: str, threads: int, cancel: Any, same_geometry: Any | None
 ) -> Any:
+    if isinstance(mesh, CurveData):
+        return core.Mesh.from_curves(
+            mesh.name, mesh.positions, mesh.radii, mesh.curve_offsets, shape=mesh.shape,
+            subdivisions=mesh.subdivisions, builder=builder, threads=threads, cancel=cancel,
+        )  # fmt: skip
+    if isinstance(mesh, PointData):
+        return core.Mesh.from_points(
+            mesh.name, mesh.positions, mesh.radii, builder=builder, threads=threads, cancel=cancel
+        )
     return core.Mesh(
         mesh.name, mesh.positions, mesh.corner_verts, mesh.face_offsets,
         tri2corner=mesh.tri2corner, tri2face=mesh.tri2face, corner_normals=mesh.corner_normals,

@@ -50,6 +50,43 @@ class MeshData:
 
 
 @dataclass(slots=True)
+class CurveData:
+    """Hair and other curves in their own space, through keys by Catmull and Rom; curve c has keys
+    curve_offsets[c] to curve_offsets[c + 1] − 1."""
+
+    name: str
+    positions: FloatArray  # [keys, 3]
+    radii: FloatArray  # [keys], half a curve's width, not negative
+    curve_offsets: IntArray  # [curves + 1]
+    shape: str = "RIBBONS"  # or THICK
+    subdivisions: int = 2  # a ribbon's segment is drawn by 2 ** subdivisions + 1 pieces
+
+    def geometry(self) -> Arrays:
+        return self.positions, self.radii, self.curve_offsets
+
+    def shading(self) -> Arrays:
+        return ()
+
+
+@dataclass(slots=True)
+class PointData:
+    """A point cloud in its own space: a sphere a point."""
+
+    name: str
+    positions: FloatArray  # [points, 3]
+    radii: FloatArray  # [points], not negative
+
+    def geometry(self) -> Arrays:
+        return self.positions, self.radii
+
+    def shading(self) -> Arrays:
+        return ()
+
+
+AnyMesh = MeshData | CurveData | PointData
+
+
+@dataclass(slots=True)
 class InstanceData:
     """All copies of one mesh. Matrices are world_from_object, mathematics' row-major (M @ p)."""
 
@@ -133,7 +170,7 @@ class SceneData:
 
     camera: CameraData
     world: WorldData
-    meshes: list[MeshData] = field(default_factory=list)
+    meshes: list[AnyMesh] = field(default_factory=list)
     instances: list[InstanceData] = field(default_factory=list)
     objects: list[ObjectData] = field(default_factory=list)
     materials: Materials = field(default_factory=Materials)

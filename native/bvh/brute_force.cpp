@@ -1,4 +1,5 @@
 #include "bvh/closest.h"
+#include "bvh/round_leaf.h"
 #include "bvh/traverse.h"
 
 namespace komorebi {
@@ -19,6 +20,15 @@ Hit test_everything(const SceneView& scene, const Ray& ray) {
     LocalRay local;
     if (!enter_instance(scene.instances[index], ray, world, &local)) continue;
     const MeshView& mesh = scene.meshes[scene.instances[index].mesh];
+    if (mesh.kind != PrimitiveKind::kTriangle) {
+      const RoundRay round = make_round_ray(local, local_direction(scene.instances[index], ray));
+      const std::uint32_t self = index == ray.self_instance ? ray.self_primitive : kNone;
+      for (std::uint32_t i = 0; i < mesh.primitive_count * mesh.segment_parts; ++i) {
+        const bool found = test_round_item(mesh, round, self, index, i, &closest);
+        if (kAny && found) return closest.hit;
+      }
+      continue;
+    }
     for (std::uint32_t i = 0; i < mesh.triangle_count; ++i) {
       const Vec3 a = corner(mesh, i, 0), b = corner(mesh, i, 1), c = corner(mesh, i, 2);
       if (is_degenerate(a, b, c)) continue;

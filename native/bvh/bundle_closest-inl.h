@@ -80,10 +80,39 @@ HWY_INLINE void walk_closest(const TreeView& tree, const Bundle& bundle, const B
   }
 }
 
+/// Rays of `bundle` that find something nearer in a set of curves or points.
+HWY_NOINLINE std::uint32_t find_in_round(const MeshView& mesh, std::uint32_t instance,
+                                         const LocalBundle& bundle, std::uint32_t rays,
+                                         Nearest& nearest) {
+  const RoundRays round(bundle, rays);
+  std::uint32_t all_found = 0;
+  const auto visit = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
+    const std::uint32_t found =
+        round.meet(mesh, instance, leaf, active,
+                   [&](std::uint32_t i) HWY_ATTR { return &nearest.closest[i]; });
+    for (std::uint32_t left = found; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::uint32_t>(__builtin_ctz(left));
+      nearest.limit[i] = nearest.closest[i].limit;
+    }
+    all_found |= found;
+    return found;
+  };
+  const auto address = [&](std::uint32_t child) HWY_ATTR { return round_child(mesh, child); };
+  while (rays != 0) {
+    const std::uint32_t now = same_octant(bundle.slab, rays);
+    walk_closest(mesh.tree, bundle.rays, bundle.slab, now, nearest, visit, address);
+    rays &= ~now;
+  }
+  return all_found;
+}
+
 /// Rays of `bundle` that find something nearer in a mesh.
 HWY_INLINE std::uint32_t find_in_mesh(const MeshView& mesh, std::uint32_t instance,
                                       const LocalBundle& bundle, std::uint32_t rays,
                                       Nearest& nearest) {
+  if (HWY_UNLIKELY(mesh.kind != PrimitiveKind::kTriangle)) {
+    return find_in_round(mesh, instance, bundle, rays, nearest);
+  }
   std::uint32_t all_found = 0;
   const auto visit = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
     const OpenCluster cluster(mesh.clusters + std::size_t{leaf} * kClusterUnit);

@@ -86,9 +86,32 @@ struct Turn {
   std::uint32_t put_off = 0;  ///< rays that blockers did not block and that have not walked
 };
 
+/// Rays of `bundle` that a set of curves or points blocks.
+HWY_NOINLINE std::uint32_t walk_round(const MeshView& mesh, std::uint32_t instance,
+                                      const LocalBundle& bundle, std::uint32_t rays) {
+  const RoundRays round(bundle, rays);
+  Closest any;
+  const auto visit = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
+    return round.meet(mesh, instance, leaf, active, [&](std::uint32_t) { return &any; });
+  };
+  const auto address = [&](std::uint32_t child) HWY_ATTR { return round_child(mesh, child); };
+  std::uint32_t found = 0;
+  while (rays != 0) {  // all at once unless the instance is turned
+    const std::uint32_t now = same_octant(bundle.slab, rays);
+    const WalkingRays walking(bundle.slab, now);
+    const Reach reach(walking, bundle.rays, now);
+    found |= walk_bundle(mesh.tree, walking, reach, now, visit, address);
+    rays &= ~now;
+  }
+  return found;
+}
+
 /// Rays of `bundle` that a mesh blocks.
 HWY_INLINE std::uint32_t walk_mesh(const MeshView& mesh, std::uint32_t instance,
                                    const LocalBundle& bundle, std::uint32_t rays, Turn& turn) {
+  if (HWY_UNLIKELY(mesh.kind != PrimitiveKind::kTriangle)) {
+    return walk_round(mesh, instance, bundle, rays);
+  }
   const auto test = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
     const std::byte* record = mesh.clusters + std::size_t{leaf} * kClusterUnit;
 #if HWY_TARGET != HWY_SCALAR

@@ -20,11 +20,13 @@ struct Closest {
   Closest() = default;
   explicit Closest(const Ray& ray) : limit(ray.t_max) {}
 
-  /// Nearer, or as near with smaller (instance, primitive).
+  /// Nearer, or as near with smaller (instance, primitive, u): a curve's segment can be met in more
+  /// than one leaf.
   bool is_better(const Hit& other) const {
     if (other.t != hit.t || !hit.valid()) return !hit.valid() || other.t < hit.t;
     if (other.instance != hit.instance) return other.instance < hit.instance;
-    return other.primitive < hit.primitive;
+    if (other.primitive != hit.primitive) return other.primitive < hit.primitive;
+    return other.u < hit.u;
   }
 
   bool keep(const Hit& other) {

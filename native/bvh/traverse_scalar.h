@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bvh/closest.h"
+#include "bvh/round_leaf.h"
 #include "bvh/topology.h"
 #include "bvh/wide_node.h"
 
@@ -47,6 +48,19 @@ bool walk(const TreeView& tree, const SlabRay& slab, Interval range, const float
   return false;
 }
 
+/// Whether a ray meets a set of curves or points; the better hit is kept.
+template <bool kAny>
+bool trace_round(const MeshView& mesh, std::uint32_t instance, const LocalRay& local,
+                 const Vec3& direction, const Ray& ray, Closest* closest) {
+  const RoundRay round = make_round_ray(local, direction);
+  const std::uint32_t self = instance == ray.self_instance ? ray.self_primitive : kNone;
+  const auto visit = [&](std::uint32_t leaf) {
+    const bool found = test_round_leaf(mesh, round, self, instance, leaf, closest);
+    return kAny && found;
+  };
+  return walk(mesh.tree, local.slab, local.range, closest->limit, visit);
+}
+
 /// Closest (or any) hit of one ray through both levels of trees.
 template <bool kAny, class Filter>
 Hit trace_scalar(const SceneView& scene, const Ray& ray, const Filter& filter) {
@@ -59,6 +73,9 @@ Hit trace_scalar(const SceneView& scene, const Ray& ray, const Filter& filter) {
     LocalRay local;
     if (!enter_instance(instance, ray, world, &local)) return false;
     const MeshView& mesh = scene.meshes[instance.mesh];
+    if (mesh.kind != PrimitiveKind::kTriangle) {
+      return trace_round<kAny>(mesh, index, local, local_direction(instance, ray), ray, &closest);
+    }
     const auto visit_cluster = [&](std::uint32_t leaf) {
       const ClusterView cluster(mesh.clusters + std::size_t{leaf} * kClusterUnit);
       for (std::uint32_t k = 0; k < cluster.triangle_count(); ++k) {

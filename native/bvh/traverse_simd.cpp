@@ -3,6 +3,7 @@
 #include "bvh/closest.h"
 #include "bvh/kernel.h"
 #include "bvh/pack_table.h"
+#include "bvh/round_leaf.h"
 #include "bvh/simd_targets.h"
 #include "bvh/traverse_scalar.h"
 
@@ -18,6 +19,7 @@
 #include "bvh/bundle_nodes-inl.h"
 #include "bvh/bundle_leaves-inl.h"
 #include "bvh/bundle_cluster-inl.h"
+#include "bvh/bundle_round-inl.h"
 #include "bvh/bundle_walk-inl.h"
 #include "bvh/bundle_sort-inl.h"
 #include "bvh/bundle_closest-inl.h"

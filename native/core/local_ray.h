@@ -33,6 +33,11 @@ inline Mat3 absolute(const Mat3& m) {
   return Mat3(absolute(m[0]), absolute(m[1]), absolute(m[2]));
 }
 
+/// A ray's direction in an instance's space.
+inline Vec3 local_direction(const InstanceView& instance, const Ray& ray) {
+  return product(instance.local_from_world, ray.direction);
+}
+
 /// Takes a ray into an instance; false if the instance cannot be hit by it: no common mask bit, or
 /// the ray misses its world box (its own box, not a node's, so that the tree over the instances
 /// decides nothing).
@@ -48,7 +53,7 @@ inline bool enter_instance(const InstanceView& instance, const Ray& ray, const S
   if (local->range.is_empty()) return false;
   const Vec3 offset = ray.origin - instance.position;
   const Vec3 origin = product(instance.local_from_world, offset);
-  const Vec3 direction = product(instance.local_from_world, ray.direction);
+  const Vec3 direction = local_direction(instance, ray);
   const Vec3 spread = product(absolute(instance.local_from_world), absolute(offset));
   const Vec3 error = spread * kPadding + instance.local_error;
   const Vec3 shift = error + Vec3(max_abs(origin) * kPadding);

@@ -7,15 +7,25 @@
 
 namespace komorebi {
 
-/// What a mesh's primitives are; curves and points come behind the same records.
-enum class PrimitiveKind : std::uint32_t { kTriangle = 0 };
+/// What a mesh's primitives are; all come behind the same records.
+enum class PrimitiveKind : std::uint32_t { kTriangle = 0, kCurve = 1, kSphere = 2 };
+
+/// What a curve looks like: flat and turned to every ray, or round (core/curve.h).
+enum class CurveShape : std::uint32_t { kRibbon = 0, kThick = 1 };
 
 enum InstanceFlag : std::uint32_t {
   kInstanceHoldout = 1u << 0,
   kInstanceShadowCatcher = 1u << 1,
 };
 
-struct WideNode;  // bvh/wide_node.h
+struct WideNode;   // bvh/wide_node.h
+struct RoundLeaf;  // core/round_leaf.h
+
+/// Where the leaves of a tree over curves or points put theirs.
+struct LeafGrid {
+  Vec3 origin{0.0f};
+  Vec3 step{0.0f};
+};
 
 /// A named array on a mesh (UV map, colour): the table is there before the first reader.
 enum class AttributeDomain : std::uint32_t { kVertex, kCorner, kFace };
@@ -52,6 +62,16 @@ struct MeshView {
   std::uint32_t attribute_count = 0;
   TreeView tree;
   const std::byte* clusters = nullptr;  ///< leaves of the tree: bvh/triangle_cluster.h
+  // Curves and spheres instead of triangles; primitives are segments (of all curves), or points.
+  CurveShape shape = CurveShape::kRibbon;
+  std::uint32_t pieces = 1;                    ///< of a segment
+  std::uint32_t segment_parts = 1;             ///< leaves that a segment is spread over
+  std::uint32_t primitive_count = 0;           ///< segments, or points
+  std::uint32_t point_count = 0;               ///< keys of curves, or points
+  const float* points = nullptr;               ///< [point_count][4]: x, y, z, radius
+  const std::uint32_t* segment2key = nullptr;  ///< first key | bits of core/curve.h
+  const RoundLeaf* leaves = nullptr;           ///< of the tree
+  LeafGrid leaf_grid;
 };
 
 /// One instance of a mesh.  world = world_from_local · local + position

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/local_ray.h"
+#include "core/round_surface.h"
 #include "core/scene_view.h"
 
 namespace komorebi {
@@ -67,6 +68,41 @@ inline double edge_margin(const Vec3d& ab, const Vec3d& ac, double error) {
   return margin < 0.125 ? margin : 0.125;
 }
 
+/// surface_point on a curve or sphere. Both normals are the round surface's, also where the curve
+/// is a ribbon: its flat side would leave hair half as much light, in Cycles too.
+inline SurfacePoint round_surface_point(const InstanceView& instance, const MeshView& mesh,
+                                        const Hit& hit, const Ray& ray) {
+  const Mat3d into_local(instance.local_from_world);
+  const Vec3d place(instance.position);
+  RoundRay round;
+  set_round_frame(into_local * (Vec3d(ray.origin) - place), into_local * Vec3d(ray.direction),
+                  round);
+  const RoundPoint at = round_point(mesh, hit, round);
+  const Vec3d relative = Mat3d(instance.world_from_local) * at.position;
+  const Vec3 local(at.position);
+  Vec3 local_error = gamma(2) * (glm::abs(local) + Vec3(max_abs(local)));
+  local_error +=
+      product(absolute(instance.local_from_world),
+              gamma(6) * glm::abs(Vec3(relative)) + gamma(2) * glm::abs(Vec3(relative + place)));
+  SurfacePoint point;
+  point.position = Vec3(relative + place);
+  const Vec3 error = product(absolute(instance.world_from_local), local_error) +
+                     gamma(2) * glm::abs(point.position);
+  // Cycles takes a sphere's normal to be where the point lies from its centre in the world.
+  const Vec3d normal = mesh.kind == PrimitiveKind::kSphere
+                           ? Mat3d(instance.world_from_local) * at.normal
+                           : glm::transpose(into_local) * at.normal;
+  const double length = std::sqrt(glm::dot(normal, normal));
+  point.normal = length > 0.0 ? Vec3(normal / length) : unit_or(-ray.direction, Vec3(0, 0, 1));
+  // Of a stretched sphere it may point away, and is turned round.
+  if (mesh.kind == PrimitiveKind::kSphere && glm::dot(point.normal, ray.direction) > 0.0f) {
+    point.normal = -point.normal;
+  }
+  point.geometric_normal = point.normal;
+  point.offset = glm::dot(glm::abs(point.normal), error);
+  return point;
+}
+
 }  // namespace detail
 
 /// The point of a hit with a carried error bound (pbrt-v4 §6.8.5): from the barycentrics, whatever
@@ -79,6 +115,7 @@ inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit, const 
   using namespace detail;
   const InstanceView& instance = scene.instances[hit.instance];
   const MeshView& mesh = scene.meshes[instance.mesh];
+  if (mesh.kind != PrimitiveKind::kTriangle) return round_surface_point(instance, mesh, hit, ray);
   const std::size_t tri = hit.primitive;
   const Vec3d a(vertex(mesh, mesh.tri2vtx[3 * tri]));
   const Vec3d ab = Vec3d(vertex(mesh, mesh.tri2vtx[3 * tri + 1])) - a;

@@ -7,6 +7,10 @@
 #include "parallel/cancel.h"
 #include "parallel/thread_pool.h"
 
+namespace komorebi {
+class Mesh;
+}
+
 namespace komorebi::python {
 
 namespace py = pybind11;
@@ -14,6 +18,9 @@ namespace py = pybind11;
 // One function a part of the module, each in a file of its own.
 void bind_scene(py::module_& module);
 void bind_session(py::module_& module);
+
+/// Curves and points, which Mesh holds too.
+void bind_round(py::class_<Mesh, std::shared_ptr<Mesh>>& mesh);
 
 /// A pool for a build: `threads` of Blender's scene, 0 for one a core. One pool is kept from call
 /// to call, because starting threads costs more than a small mesh's build.

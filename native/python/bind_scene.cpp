@@ -180,10 +180,12 @@ void commit(Scene& scene, unsigned threads, const std::shared_ptr<Cancel>& cance
 }
 
 void bind_mesh(py::module_& module) {
-  py::class_<Mesh, std::shared_ptr<Mesh>>(
+  py::class_<Mesh, std::shared_ptr<Mesh>> mesh(
       module, "Mesh",
-      "A triangle mesh with its tree; immutable, shared by as many scenes as hold it.")
-      .def(py::init(&make_mesh),
+      "A triangle mesh, curves or points with their tree; immutable, shared by as many scenes as "
+      "hold it.");
+  bind_round(mesh);
+  mesh.def(py::init(&make_mesh),
            R"(Copies a polygon mesh into the tracer's layout and builds its tree; releases the GIL.
 
 name: for messages. positions: float32 [V, 3], object space, metres. corner_verts: int32 [C].
@@ -206,8 +208,9 @@ Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
       .def_property_readonly("vertex_count", &Mesh::vertex_count)
       .def_property_readonly("degenerate_count", &Mesh::degenerate_count)
       .def_property_readonly("byte_count", &Mesh::byte_count)
-      .def_property_readonly("node_count", [](const Mesh& m) { return m.tree().nodes.size(); })
-      .def_property_readonly("depth", [](const Mesh& m) { return m.tree().depth; })
+      .def_property_readonly("node_count", &Mesh::node_count)
+      .def_property_readonly("depth", &Mesh::depth)
+      .def_property_readonly("primitive_count", &Mesh::primitive_count)
       .def("tri2corner", &mesh_tri2corner, "Corners of each triangle, int32 [T, 3].");
 }
 

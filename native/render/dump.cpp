@@ -20,7 +20,22 @@ std::span<const T> span_of(const T* data, std::size_t size) {
   return data ? std::span<const T>(data, size) : std::span<const T>();
 }
 
+/// Curves or points.
+void put_round(ArrayFile& file, const std::string& key, const Mesh& mesh) {
+  const RoundGeometry& round = *mesh.round();
+  const bool are_curves = round.kind == PrimitiveKind::kCurve;
+  file.put_text(key + "name", mesh.name());
+  file.put<double>(key + "origin", span_of(glm::value_ptr(mesh.origin()), 3), {3});
+  put_rows<float>(file, key + (are_curves ? "keys" : "points"), round.points, 4);
+  if (!are_curves) return;
+  const std::vector<std::int32_t> offsets = round.curve_offsets();
+  file.put<std::int32_t>(key + "curve_offsets", offsets, {offsets.size()});
+  file.put_value<std::uint32_t>(key + "shape", static_cast<std::uint32_t>(round.shape));
+  file.put_value<std::uint32_t>(key + "subdivisions", round.subdivisions);
+}
+
 void put_mesh(ArrayFile& file, const std::string& key, const Mesh& mesh) {
+  if (mesh.round()) return put_round(file, key, mesh);
   const MeshView v = mesh.view();
   const std::size_t triangles = v.triangle_count;
   file.put_text(key + "name", mesh.name());
@@ -43,9 +58,40 @@ void put_mesh(ArrayFile& file, const std::string& key, const Mesh& mesh) {
   }
 }
 
+std::shared_ptr<const Mesh> get_round(const ArrayFile& file, const std::string& key,
+                                      double expected_rays, ThreadPool& pool,
+                                      const Cancel& cancel) {
+  const bool are_curves = file.has(key + "keys");
+  const auto origin = file.get<double>(key + "origin", 3);
+  const auto points = file.get<float>(key + (are_curves ? "keys" : "points"));
+  std::vector<float> xyz(points.size() / 4 * 3), radius(points.size() / 4);
+  for (std::size_t i = 0; i < radius.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      xyz[3 * i + c] = static_cast<float>(double{points[4 * i + c]} + origin[c]);
+    }
+    radius[i] = points[4 * i + 3];
+  }
+  const Builder builder = choose_builder(radius.size(), expected_rays);
+  const std::string name = file.get_text(key + "name");
+  if (!are_curves) return Mesh::build(PointsInput{name, xyz, radius}, builder, pool, cancel);
+  const auto offsets = file.get<std::int32_t>(key + "curve_offsets");
+  const auto shape = file.get_value<std::uint32_t>(key + "shape");
+  if (shape > 1) throw std::runtime_error("the scene's curves are of an unknown shape");
+  const CurvesInput input{name,
+                          xyz,
+                          radius,
+                          offsets,
+                          static_cast<CurveShape>(shape),
+                          file.get_value<std::uint32_t>(key + "subdivisions")};
+  return Mesh::build(input, builder, pool, cancel);
+}
+
 /// Back through the same door as a host's meshes, so that a damaged file is refused as they are.
 std::shared_ptr<const Mesh> get_mesh(const ArrayFile& file, const std::string& key,
                                      double expected_rays, ThreadPool& pool, const Cancel& cancel) {
+  if (file.has(key + "keys") || file.has(key + "points")) {
+    return get_round(file, key, expected_rays, pool, cancel);
+  }
   const auto origin = file.get<double>(key + "origin", 3);
   auto vtx2xyz = file.get<float>(key + "vtx2xyz");
   for (std::size_t i = 0; i < vtx2xyz.size(); ++i) {

@@ -17,13 +17,15 @@ struct DumpedRender {
 /// Writes everything a render needs into one file of named arrays (io/array_file.h):
 ///
 ///     mesh/N/name, vtx2xyz, origin, tri2vtx, corner2normal*, tri2smooth*, tri2material*
+///     mesh/N/name, origin, keys, curve_offsets, shape, subdivisions  (curves)
+///     mesh/N/name, origin, points  (points)
 ///     instance/mesh, world_from_object, object_index, mask, flags
 ///     world/color  or  world/texels, world/strength, world/texture_from_world
 ///     camera/kind, clip_from_world, clip_start, clip_end, resolution
 ///     settings/…   one value a setting, by its name on scene.komorebi
 ///
-/// (* only where the mesh has them.) Vertices are relative to `origin`; matrices are column-major.
-/// Throws std::runtime_error naming the file.
+/// (* only where the mesh has them.) Vertices, keys and points (x, y, z, radius) are relative to
+/// `origin`; matrices are column-major. Throws std::runtime_error naming the file.
 void write_dump(const std::string& path, const Scene& scene, const Settings& settings);
 
 /// Throws std::runtime_error or std::invalid_argument with a sentence naming what is wrong.

@@ -125,8 +125,22 @@ std::shared_ptr<const Mesh> Mesh::build(const MeshInput& in, Builder builder, Th
   return mesh;
 }
 
+std::shared_ptr<const Mesh> Mesh::build(const CurvesInput& in, Builder builder, ThreadPool& pool,
+                                        const Cancel& cancel) {
+  return std::shared_ptr<const Mesh>(new Mesh(in.name, build_curves(in, builder, pool, cancel)));
+}
+
+std::shared_ptr<const Mesh> Mesh::build(const PointsInput& in, Builder builder, ThreadPool& pool,
+                                        const Cancel& cancel) {
+  return std::shared_ptr<const Mesh>(new Mesh(in.name, build_points(in, builder, pool, cancel)));
+}
+
 std::shared_ptr<const Mesh> Mesh::flattened(const Mat4d& matrix, ThreadPool& pool,
                                             const Cancel& cancel) const {
+  if (round_) {
+    RoundGeometry moved = round_->transformed(matrix, Builder::kLinear, pool, cancel);
+    return std::shared_ptr<const Mesh>(new Mesh(name_, std::move(moved)));
+  }
   const Array<float>& positions = geometry_->vtx2xyz;
   std::vector<float> moved(positions.size());
   for (std::size_t i = 0; i + 2 < moved.size(); i += 3) {
@@ -169,12 +183,14 @@ MeshView Mesh::view() const {
   view.tri2uv = tri2uv_.empty() ? nullptr : tri2uv_.data();
   view.tree = tree().view();
   view.clusters = tree().clusters.data();
+  if (round_) round_->fill(view);
   return view;
 }
 
 std::size_t Mesh::byte_count() const {
-  return sizeof(Mesh) + geometry_->byte_count() + bytes(normals_) + bytes(every_corner_) +
-         bytes(tri2smooth_) + bytes(tri2material_) + bytes(tri2uv_);
+  const std::size_t geometry = round_ ? round_->byte_count() : geometry_->byte_count();
+  return sizeof(Mesh) + geometry + bytes(normals_) + bytes(every_corner_) + bytes(tri2smooth_) +
+         bytes(tri2material_) + bytes(tri2uv_);
 }
 
 }  // namespace komorebi

@@ -7,11 +7,12 @@
 
 #include "core/scene_view.h"
 #include "render/mesh_geometry.h"
+#include "render/round_geometry.h"
 
 namespace komorebi {
 
 /// A mesh in the tracer's own layout, with its tree: immutable, counted, shared by scenes, frames
-/// and view layers.
+/// and view layers. In place of triangles it can hold curves or points (`round`).
 class Mesh {
  public:
   /// Throws std::invalid_argument naming the mesh and a count, or Cancelled. With `same_geometry`,
@@ -20,15 +21,24 @@ class Mesh {
                                            ThreadPool& pool, const Cancel& cancel,
                                            const Mesh* same_geometry = nullptr);
 
+  static std::shared_ptr<const Mesh> build(const CurvesInput& input, Builder builder,
+                                           ThreadPool& pool, const Cancel& cancel);
+  static std::shared_ptr<const Mesh> build(const PointsInput& input, Builder builder,
+                                           ThreadPool& pool, const Cancel& cancel);
+
   /// The same triangles under a matrix that has no inverse (an object scaled flat): transformed
   /// here, because no ray can be taken into such an object's space. `matrix` acts on object space.
+  /// Also curves and points under any matrix.
   std::shared_ptr<const Mesh> flattened(const Mat4d& matrix, ThreadPool& pool,
                                         const Cancel& cancel) const;
 
   MeshView view() const;
   const std::string& name() const { return name_; }
-  const Vec3d& origin() const { return geometry_->origin; }
-  const Aabb& bounds() const { return tree().bounds; }  ///< relative to `origin`, conservative
+  const Vec3d& origin() const { return round_ ? round_->origin : geometry_->origin; }
+  /// Relative to `origin`, conservative.
+  const Aabb& bounds() const { return round_ ? round_->tree.bounds : tree().bounds; }
+  /// Curves or points in place of triangles, or null.
+  const RoundGeometry* round() const { return round_.get(); }
   std::uint32_t triangle_count() const {
     return static_cast<std::uint32_t>(geometry_->triangle_count());
   }
@@ -37,18 +47,31 @@ class Mesh {
   }
   std::uint32_t degenerate_count() const { return tree().degenerate_count; }
   const MeshTree& tree() const { return geometry_->tree; }
+  std::size_t node_count() const {
+    return round_ ? round_->tree.nodes.size() : geometry_->tree.nodes.size();
+  }
+  std::uint32_t depth() const { return round_ ? round_->tree.depth : geometry_->tree.depth; }
+  /// Triangles, segments of curves, or points.
+  std::uint32_t primitive_count() const {
+    return round_ ? round_->primitive_count() : triangle_count();
+  }
   /// Which corners carry a triangle's UVs and normals, [triangles][3].
   std::vector<std::int32_t> tri2corner() const;
   std::size_t byte_count() const;
 
  private:
   Mesh() = default;
+  Mesh(std::string name, RoundGeometry round)
+      : name_(std::move(name)),
+        geometry_(std::make_shared<const MeshGeometry>()),
+        round_(std::make_shared<const RoundGeometry>(std::move(round))) {}
   void take_normals(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
   void take_materials(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
   void take_uvs(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
 
   std::string name_;
-  std::shared_ptr<const MeshGeometry> geometry_;
+  std::shared_ptr<const MeshGeometry> geometry_;  // empty where there are curves or points
+  std::shared_ptr<const RoundGeometry> round_;
   Array<float> normals_;                       // as they came, by vertex or by corner; empty: flat
   const std::uint32_t* tri2normal_ = nullptr;  // into geometry_, or every_corner_
   Array<std::uint32_t> every_corner_;          // 0, 1, 2 …

@@ -144,7 +144,7 @@ void Scene::place(const InstanceInput& input, ThreadPool& pool, const Cancel& ca
     position += linear * mesh->origin();
   } else {
     mesh = mesh->flattened(input.world_from_object, pool, cancel);
-    invisible_count_ += mesh->degenerate_count() == mesh->triangle_count();
+    invisible_count_ += mesh->bounds().is_empty();
     instance.mesh = static_cast<std::uint32_t>(traced_meshes_.size());
     traced_meshes_.push_back(mesh);
     linear = inverse = Mat3d(1.0);

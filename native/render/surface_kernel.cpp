@@ -3,28 +3,23 @@
 #include "bvh/kernel.h"
 
 namespace komorebi {
-namespace {
 
-void surface_points_scalar(const RenderContext& context, const SurfaceBlock& block) {
-  for (std::uint32_t i = 0; i < block.count; ++i) {
-    const std::uint32_t path = block.path[i];
-    const SurfacePoint point = surface_point(context.scene, block.hits[path], block.rays[path]);
-    const Vec3 origin = leaving_origin(point);
-    for (int c = 0; c < 3; ++c) {
-      block.normal[c][i] = point.normal[c];
-      block.geometric_normal[c][i] = point.geometric_normal[c];
-      block.leaving_origin[c][i] = origin[c];
-    }
-    block.depth[i] = camera_depth(context.camera, point.position);
+void surface_point_at(const RenderContext& context, const SurfaceBlock& block, std::uint32_t i) {
+  const std::uint32_t path = block.path[i];
+  const SurfacePoint point = surface_point(context.scene, block.hits[path], block.rays[path]);
+  const Vec3 origin = leaving_origin(point);
+  for (int c = 0; c < 3; ++c) {
+    block.normal[c][i] = point.normal[c];
+    block.geometric_normal[c][i] = point.geometric_normal[c];
+    block.leaving_origin[c][i] = origin[c];
   }
+  block.depth[i] = camera_depth(context.camera, point.position);
 }
-
-}  // namespace
 
 void surface_points(const RenderContext& context, const SurfaceBlock& block) {
   const int kernel = active_kernel_index();
   if (kernel >= 0) return kSimdSurfaceKernels[kernel]->surface_points(context, block);
-  surface_points_scalar(context, block);
+  for (std::uint32_t i = 0; i < block.count; ++i) surface_point_at(context, block, i);
 }
 
 }  // namespace komorebi

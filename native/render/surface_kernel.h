@@ -27,6 +27,9 @@ struct SurfaceKernel {
 /// Null-terminated, best first.
 extern const SurfaceKernel* const kSimdSurfaceKernels[];
 
+/// The same for the i-th of them alone: for those that no kernel does in lanes.
+void surface_point_at(const RenderContext& context, const SurfaceBlock& block, std::uint32_t i);
+
 /// The same in the active instruction set (bvh/traverse.h).
 void surface_points(const RenderContext& context, const SurfaceBlock& block);
 

@@ -29,11 +29,13 @@ struct HitLanes {
     }
   }
 
-  HWY_INLINE void fetch(const RenderContext& context, const SurfaceBlock& block, std::uint32_t path,
+  /// False for a curve or sphere, of which nothing is fetched.
+  HWY_INLINE bool fetch(const RenderContext& context, const SurfaceBlock& block, std::uint32_t path,
                         std::size_t lane) {
     const Hit& hit = block.hits[path];
     const InstanceView& instance = context.scene.instances[hit.instance];
     const MeshView& mesh = context.scene.meshes[instance.mesh];
+    if (mesh.kind != PrimitiveKind::kTriangle) return false;
     const std::size_t first = 3 * std::size_t{hit.primitive};
     const bool is_smooth = mesh.normals && (!mesh.tri2smooth || mesh.tri2smooth[hit.primitive]);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -57,6 +59,7 @@ struct HitLanes {
                           hit.u,
                           hit.v};
     put(kOrigin, ray, 8, lane);
+    return true;
   }
 
   HWY_INLINE Float load(int field) const { return hn::Load(TagF(), fields[field]); }
@@ -186,10 +189,15 @@ void surface_points(const RenderContext& context, const SurfaceBlock& block) {
   HitLanes hit{};
   constexpr std::size_t kLanes = HitLanes::kLanes;
   for (std::size_t i = 0; i < block.count; i += kLanes) {
+    std::uint32_t others = 0;  // curves and spheres: one by one
     for (std::size_t lane = 0; lane < kLanes && i + lane < block.count; ++lane) {
-      hit.fetch(context, block, block.path[i + lane], lane);
+      if (!hit.fetch(context, block, block.path[i + lane], lane)) others |= 1u << lane;
     }
-    finish_points(context, hit, block, i);
+    if (others != (1u << kLanes) - 1) finish_points(context, hit, block, i);
+    for (; others != 0; others &= others - 1) {
+      const auto lane = static_cast<std::uint32_t>(__builtin_ctz(others));
+      surface_point_at(context, block, static_cast<std::uint32_t>(i) + lane);
+    }
   }
 }
 

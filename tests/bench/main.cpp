@@ -8,7 +8,7 @@
 int main(int count, char** words) {
   using namespace komorebi::bench;
   const std::map<std::string, void (*)(const Options&)> parts = {
-      {"build", build_part}, {"rays", rays_part}, {"scale", scale_part}};
+      {"build", build_part}, {"rays", rays_part}, {"scale", scale_part}, {"curves", curves_part}};
   try {
     const std::string part = count > 1 ? words[1] : "";
     if (part == "instructions") {

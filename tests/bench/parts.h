@@ -8,5 +8,6 @@ namespace komorebi::bench {
 void build_part(const Options& options);
 void rays_part(const Options& options);
 void scale_part(const Options& options);
+void curves_part(const Options& options);
 
 }  // namespace komorebi::bench

@@ -18,15 +18,3 @@ def warn_unsupported(engine: Any, depsgraph: Any) -> None:
         reporting.warn(
             engine, f'camera "{name_of(camera)}": depth of field is not rendered yet, all is sharp'
         )
-    for obj in depsgraph.objects:
-        _warn_hair(engine, obj)
-
-
-def _warn_hair(engine: Any, obj: Any) -> None:
-    for system in obj.particle_systems:
-        settings = system.settings
-        if settings.type == "HAIR" and settings.render_type == "PATH":
-            reporting.warn(
-                engine, f'particle system "{name_of(system)}" of object "{name_of(obj)}": '
-                "hair strands are not rendered yet",
-            )  # fmt: skip

@@ -11,8 +11,6 @@ from compare.inside.settle import forget_animation, safe_name, settle, settle_al
 
 # Kinds of object that Komorebi does not render yet.
 KINDS = {
-    "CURVES": "hair curves",
-    "POINTCLOUD": "point cloud",
     "VOLUME": "volume",
     "GPENCIL": "grease pencil",
     "GREASEPENCIL": "grease pencil",
@@ -59,10 +57,6 @@ def objects_off() -> list[str]:
             thing, shadow_terminator_geometry_offset=0.0, shadow_terminator_shading_offset=0.0
         )
         settle_all(getattr(thing, "cycles", None), use_camera_cull=False, use_distance_cull=False)
-    for particles in bpy.data.particles:
-        if particles.type == "HAIR" and particles.render_type == "PATH":
-            settle(particles, "render_type", "NONE")
-            found["hair particle settings"] += 1
     return [f"{count} {name}" for name, count in sorted(found.items())]
 
 

@@ -1,0 +1,110 @@
+"""Hair of particle systems → CurveData: what Blender evaluated for the frame, as Cycles reads it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from .. import compat
+from ..scene_data import CurveData, FloatArray, IntArray
+
+NOT_SHOWN_IN = {"EDIT", "PARTICLE_EDIT"}  # modes of the emitter
+
+
+def hair_systems(obj: Any) -> list[Any]:
+    """The particle systems of an evaluated object that render as hair strands."""
+    if not len(obj.particle_systems) or obj.mode in NOT_SHOWN_IN:
+        return []
+    systems = []
+    for modifier in obj.modifiers:
+        if modifier.type != "PARTICLE_SYSTEM" or not modifier.show_render:
+            continue
+        settings = modifier.particle_system.settings
+        if settings.type == "HAIR" and settings.render_type == "PATH":
+            systems.append(modifier.particle_system)
+    return systems
+
+
+def export_hair(obj: Any, name: str, scene: Any) -> CurveData | None:
+    """All strands of an emitter in its own space; None when it has none."""
+    parts = [_export_system(obj, system) for system in hair_systems(obj)]
+    parts = [part for part in parts if len(part[1])]
+    if not parts:
+        return None
+    counts = np.concatenate([part[2] for part in parts])
+    offsets = np.zeros(len(counts) + 1, np.int32)
+    np.cumsum(counts, out=offsets[1:])
+    shape, subdivisions = compat.curve_shape(scene)
+    return CurveData(
+        name=name,
+        positions=np.concatenate([part[0] for part in parts]),
+        radii=np.concatenate([part[1] for part in parts]),
+        curve_offsets=offsets,
+        shape=shape,
+        subdivisions=subdivisions,
+    )
+
+
+def _export_system(obj: Any, system: Any) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Positions [keys, 3], radii [keys] and how many keys each strand has."""
+    settings = system.settings
+    parents, children = len(system.particles), len(system.child_particles)
+    # Where there are children, parents only lead them.
+    first = parents if settings.child_type != "NONE" and children else 0
+    strands = range(first, parents + children)
+    keys = (1 << settings.render_step) + 1
+    if settings.kink == "SPIRAL":
+        keys += settings.kink_extra_steps
+    world = _world_positions(obj, system, strands, keys)
+    local = _to_local(world, obj.matrix_world)
+    radii = _radii(local, settings)
+    return (
+        local.reshape(-1, 3),
+        radii.reshape(-1),
+        np.full(len(strands), keys, np.int32),
+    )
+
+
+def _world_positions(obj: Any, system: Any, strands: range, keys: int) -> FloatArray:
+    """[strands, keys, 3]. A key that a strand has not got is the one before it."""
+    co_hair = system.co_hair
+
+    def numbers() -> Iterator[float]:
+        for strand in strands:
+            for step in range(keys):
+                yield from co_hair(object=obj, particle_no=strand, step=step)
+
+    count = len(strands) * keys * 3
+    world = np.fromiter(numbers(), np.float32, count).reshape(len(strands), keys, 3)
+    for step in range(1, keys):
+        missing = ~world[:, step].any(axis=1)
+        world[missing, step] = world[missing, step - 1]
+    return world
+
+
+def _to_local(world: FloatArray, matrix: Any) -> FloatArray:
+    inverse = np.linalg.pinv(np.array(matrix, np.float64))
+    local = world.astype(np.float64) @ inverse[:3, :3].T + inverse[:3, 3]
+    return local.astype(np.float32)
+
+
+def _radii(local: FloatArray, settings: Any) -> FloatArray:
+    """[strands, keys]: from root to tip along the strand's length, bent by the setting Shape."""
+    steps = np.linalg.norm(np.diff(local, axis=1), axis=2)
+    along = np.zeros(local.shape[:2], np.float64)
+    np.cumsum(steps, axis=1, out=along[:, 1:])
+    length = along[:, -1:]
+    time = np.divide(along, length, out=np.zeros_like(along), where=length > 0.0)
+    share = np.clip(1.0 - time, 0.0, 1.0)
+    shape = settings.shape
+    # At −1 and 1 the power is 0 and infinite: all root, or a root alone.
+    exponent = 1.0 + shape if shape < 0.0 else 1.0 / max(1.0 - shape, 1e-6)
+    share **= exponent
+    scale = 0.5 * settings.radius_scale
+    root, tip = scale * settings.root_radius, scale * settings.tip_radius
+    radii = share * (root - tip) + tip
+    if settings.use_close_tip:
+        radii[:, -1] = 0.0
+    return radii.astype(np.float32)

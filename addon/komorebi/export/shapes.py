@@ -1,0 +1,72 @@
+"""What an object shows, as MeshData, CurveData or PointData: each unique data once."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .. import compat
+from ..errors import RenderCancelled
+from ..scene_data import AnyMesh
+from .curves import export_curves
+from .hair import export_hair, hair_systems
+from .mesh import export_mesh
+from .names import name_of
+from .points import export_points
+from .wanted import Wanted
+
+TYPES = {"MESH", "CURVES", "POINTCLOUD"}
+NONE = -1  # the index of a shape that shows nothing
+
+
+class ShapeExporter:
+    """Fills the list of meshes of one view layer."""
+
+    def __init__(self, engine: Any, depsgraph: Any, meshes: list[AnyMesh], wanted: Wanted) -> None:
+        self._engine = engine
+        self._scene = depsgraph.scene
+        self._meshes = meshes
+        self._wanted = wanted
+        self._surfaces = depsgraph.view_layer.use_solid
+        self._strands = depsgraph.view_layer.use_strand
+        self._by_data: dict[int, int] = {}
+        self._by_emitter: dict[int, int] = {}
+
+    def surface_of(self, obj: Any) -> int:
+        """The index of an evaluated object's own surface, of type TYPES, or NONE."""
+        if not self._is_shown(obj.type):
+            return NONE
+        key = obj.data.as_pointer()  # unique while the depsgraph holds the data
+        index = self._by_data.get(key)
+        if index is None:
+            index = self._by_data[key] = self._add(self._export(obj))
+        return index
+
+    def hair_of(self, obj: Any) -> int:
+        """The index of the hair that grows on an evaluated object, or NONE."""
+        if not self._strands or obj.type != "MESH" or not hair_systems(obj):
+            return NONE
+        key = obj.original.as_pointer()
+        index = self._by_emitter.get(key)
+        if index is None:
+            hair = export_hair(obj, name_of(obj), self._scene)
+            index = self._by_emitter[key] = self._add(hair)
+        return index
+
+    def _is_shown(self, kind: str) -> bool:
+        return self._strands if kind == "CURVES" else self._surfaces
+
+    def _export(self, obj: Any) -> AnyMesh | None:
+        if self._engine.test_break():
+            raise RenderCancelled
+        if obj.type == "CURVES":
+            return export_curves(obj.data, name_of(obj), self._scene)
+        if obj.type == "POINTCLOUD":
+            return export_points(obj.data, name_of(obj))
+        with compat.mesh_of(obj) as mesh:
+            return export_mesh(mesh, name_of(obj), self._wanted.uvs)
+
+    def _add(self, exported: AnyMesh | None) -> int:
+        if exported is None:
+            return NONE
+        self._meshes.append(exported)
+        return len(self._meshes) - 1

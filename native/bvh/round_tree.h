@@ -1,0 +1,31 @@
+#pragma once
+
+#include "bvh/topology.h"
+#include "bvh/wide_node.h"
+#include "core/round_leaf.h"
+#include "core/scene_view.h"
+#include "parallel/array.h"
+#include "parallel/late_array.h"
+#include "parallel/thread_pool.h"
+
+namespace komorebi {
+
+/// A set of curves or points as traversal reads it: wide nodes whose leaves are each one item
+/// (CurveItem, or a point). Keys and points are read where they are.
+struct RoundTree {
+  LateArray<WideNode> nodes;
+  Array<RoundLeaf> leaves;
+  LeafGrid grid;
+  std::uint32_t depth = 0;
+  Aabb bounds;  ///< of all padded boxes, local space; empty if there is nothing to hit
+
+  TreeView view() const;
+  std::size_t byte_count() const;
+};
+
+/// @param set  everything but its tree
+/// @throws Cancelled; std::invalid_argument for too many items
+RoundTree build_round_tree(const MeshView& set, Builder builder, ThreadPool& pool,
+                           const Cancel& cancel);
+
+}  // namespace komorebi

@@ -1,0 +1,69 @@
+#include "python/arrays.h"
+#include "python/bind.h"
+#include "render/mesh.h"
+
+namespace komorebi::python {
+namespace {
+
+CurveShape shape_from_name(const std::string& name) {
+  if (name == "RIBBONS") return CurveShape::kRibbon;
+  if (name == "THICK") return CurveShape::kThick;
+  throw std::invalid_argument("the shape of curves must be RIBBONS or THICK, not " + name);
+}
+
+std::shared_ptr<Mesh> from_curves(const std::string& name, const py::object& positions,
+                                  const py::object& radii, const py::object& curve_offsets,
+                                  const std::string& shape, std::uint32_t subdivisions,
+                                  const std::string& builder, unsigned threads,
+                                  const std::shared_ptr<Cancel>& cancel) {
+  const std::string curves = "curves \"" + name + "\": ";
+  CurvesInput input;
+  input.name = name;
+  input.key2xyz = view<float>(positions, curves + "positions", {-1, 3});
+  input.key2radius = view<float>(radii, curves + "radii", {-1});
+  input.curve_offsets = view<std::int32_t>(curve_offsets, curves + "curve_offsets", {-1});
+  input.shape = shape_from_name(shape);
+  input.subdivisions = subdivisions;
+  const Builder kind = builder_from_name(builder);
+  const py::gil_scoped_release release;
+  return std::const_pointer_cast<Mesh>(
+      Mesh::build(input, kind, *build_pool(threads), cancel_or_never(cancel)));
+}
+
+std::shared_ptr<Mesh> from_points(const std::string& name, const py::object& positions,
+                                  const py::object& radii, const std::string& builder,
+                                  unsigned threads, const std::shared_ptr<Cancel>& cancel) {
+  const std::string points = "points \"" + name + "\": ";
+  PointsInput input;
+  input.name = name;
+  input.point2xyz = view<float>(positions, points + "positions", {-1, 3});
+  input.point2radius = view<float>(radii, points + "radii", {-1});
+  const Builder kind = builder_from_name(builder);
+  const py::gil_scoped_release release;
+  return std::const_pointer_cast<Mesh>(
+      Mesh::build(input, kind, *build_pool(threads), cancel_or_never(cancel)));
+}
+
+}  // namespace
+
+void bind_round(py::class_<Mesh, std::shared_ptr<Mesh>>& mesh) {
+  mesh.def_static("from_curves", &from_curves,
+                  R"(Hair and other curves, Catmull–Rom splines through their keys.
+
+positions: float32 [K, 3], object space, metres. radii: float32 [K], not negative. curve_offsets:
+int32 [C + 1], first key of each curve. shape: RIBBONS, flat and turned to every ray, of
+2**subdivisions + 1 pieces a segment, or THICK, round. Raises ValueError naming the curves and how
+many entries are wrong, Cancelled.)",
+                  py::arg("name"), py::arg("positions"), py::arg("radii"), py::arg("curve_offsets"),
+                  py::kw_only(), py::arg("shape") = "RIBBONS", py::arg("subdivisions") = 2,
+                  py::arg("builder") = "LINEAR", py::arg("threads") = 0,
+                  py::arg("cancel") = std::shared_ptr<Cancel>());
+  mesh.def_static("from_points", &from_points,
+                  "Spheres. positions: float32 [N, 3], object space, metres; radii: float32 [N], "
+                  "not negative. Raises as from_curves.",
+                  py::arg("name"), py::arg("positions"), py::arg("radii"), py::kw_only(),
+                  py::arg("builder") = "LINEAR", py::arg("threads") = 0,
+                  py::arg("cancel") = std::shared_ptr<Cancel>());
+}
+
+}  // namespace komorebi::python

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "render/mesh.h"
+
+namespace komorebi::testing {
+
+/// Curves that own their arrays.
+struct Curves {
+  std::vector<float> xyz, radius;
+  std::vector<std::int32_t> offsets{0};
+  CurveShape shape = CurveShape::kRibbon;
+
+  void key(const Vec3d& at, double r) {
+    for (int c = 0; c < 3; ++c) xyz.push_back(static_cast<float>(at[c]));
+    radius.push_back(static_cast<float>(r));
+  }
+  void end_curve() { offsets.push_back(static_cast<std::int32_t>(radius.size())); }
+
+  CurvesInput input(const std::string& name = "test") const {
+    CurvesInput in;
+    in.name = name;
+    in.key2xyz = xyz;
+    in.key2radius = radius;
+    in.curve_offsets = offsets;
+    in.shape = shape;
+    return in;
+  }
+};
+
+/// Hair on a sphere of radius 1 around null, each as long as `length`, bent and thinner at the tip.
+inline Curves made_fur(std::uint32_t strands, std::uint32_t segments, double length, double width,
+                       double bend, CurveShape shape, unsigned seed = 1) {
+  Curves curves;
+  curves.shape = shape;
+  std::mt19937 random(seed);
+  const auto uniform = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+  const auto in_ball = [&] {
+    Vec3d v(uniform(), uniform(), uniform());
+    while (glm::dot(v, v) > 1.0 || glm::dot(v, v) < 1e-3) v = {uniform(), uniform(), uniform()};
+    return v;
+  };
+  for (std::uint32_t s = 0; s < strands; ++s) {
+    Vec3d at = glm::normalize(in_ball());
+    Vec3d along = glm::normalize(at + 0.4 * in_ball());
+    const Vec3d turn = bend * in_ball() / double(segments);
+    for (std::uint32_t k = 0; k <= segments; ++k) {
+      curves.key(at, width * (1.0 - 0.7 * double(k) / double(segments)));
+      at += length / double(segments) * along;
+      along = glm::normalize(along + turn + 0.3 * bend / double(segments) * in_ball());
+    }
+    curves.end_curve();
+  }
+  return curves;
+}
+
+inline Curves scaled_fur(Curves curves, double scale) {
+  for (float& x : curves.xyz) x = static_cast<float>(scale * double(x));
+  for (float& r : curves.radius) r = static_cast<float>(scale * double(r));
+  return curves;
+}
+
+}  // namespace komorebi::testing
