@@ -36,6 +36,12 @@ def get(key: bytes, make: Callable[[], Any]) -> Any:
     return value
 
 
+def peek(key: bytes) -> Any | None:
+    """The object of `key`, if it is here; nothing counts as used."""
+    entry = _entries.get(key)
+    return None if entry is None else entry[0]
+
+
 def next_generation() -> None:
     """A frame begins: what the last one did not use goes."""
     global _generation

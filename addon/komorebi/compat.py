@@ -8,6 +8,7 @@ from typing import Any
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from .scene_data import BoolArray, FloatArray, IntArray
 
@@ -63,6 +64,8 @@ def face_offsets(mesh: Any) -> tuple[IntArray, IntArray | None]:
     Old releases allow faces whose corners lie anywhere: then also the corners in that order.
     """
     faces, corners = len(mesh.polygons), len(mesh.loops)
+    if GENERIC_ATTRIBUTES and corners == 3 * faces:  # triangles all, one after the other
+        return np.arange(0, corners + 3, 3, dtype=np.int32), None
     starts = np.empty(faces + 1, np.uint32)
     mesh.polygons.foreach_get("loop_start", starts[:-1])
     starts[-1] = corners
@@ -117,6 +120,25 @@ def has_corner_normals(mesh: Any) -> bool:
     return bool(result.any())
 
 
+def normal_sources(mesh: Any) -> tuple[NDArray[Any] | None, ...] | None:
+    """What shading normals follow from besides positions, faces and which of them are smooth; None
+    where only the normals themselves can tell."""
+    if mesh.has_custom_normals:
+        return None
+    if CORNER_NORMALS:
+        sharp = mesh.attributes.get("sharp_edge")
+        if sharp is None or sharp.domain != "EDGE" or sharp.data_type != "BOOLEAN":
+            return ()
+        flags = np.empty(len(mesh.edges), np.bool_)
+        sharp.data.foreach_get("value", flags)
+        return (flags,)
+    if not mesh.use_auto_smooth:
+        return ()
+    flags = np.empty(len(mesh.edges), np.bool_)
+    mesh.edges.foreach_get("use_edge_sharp", flags)
+    return flags, np.array([mesh.auto_smooth_angle], np.float32)
+
+
 def corner_normals(mesh: Any) -> FloatArray:
     """Shading normals by corner [corners, 3]."""
     result = np.empty(len(mesh.loops) * 3, np.float32)
@@ -166,7 +188,7 @@ def mesh_of(obj: Any) -> Iterator[Any]:
     An object in edit mode, or one whose subdivision is left to the graphics card, holds its final
     mesh elsewhere: only `to_mesh` finds it.
     """
-    if not _is_deferred(obj):
+    if not is_deferred(obj):
         yield obj.data
         return
     try:
@@ -175,7 +197,7 @@ def mesh_of(obj: Any) -> Iterator[Any]:
         obj.to_mesh_clear()
 
 
-def _is_deferred(obj: Any) -> bool:
+def is_deferred(obj: Any) -> bool:
     if obj.mode == "EDIT":
         return True
     modifiers = obj.modifiers

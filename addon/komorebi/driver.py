@@ -21,6 +21,7 @@ from .passes import Pass, enabled_cryptomattes, enabled_passes
 from .progress import Progress
 from .result import ResultWriter
 from .scene_data import CameraData, FloatArray, SceneData
+from .unchanged import Unchanged
 from .views import active_views
 
 T = TypeVar("T")
@@ -67,11 +68,21 @@ def export_frame(engine: Any, depsgraph: Any) -> Frame | None:
     memory.require(pixels, passes, engine.resolution_x, engine.resolution_y)
     names = active_views(scene)
     settings = export_settings(scene, depsgraph.view_layer, passes, region)
-    data = export_scene(engine, depsgraph, names[0], settings["passes"])
+    unchanged = _unchanged(engine, depsgraph)
+    data = export_scene(engine, depsgraph, names[0], settings["passes"], unchanged)
     views = [View(names[0], data.camera)]
     views += [View(name, export_camera(engine, depsgraph, name)) for name in names[1:]]
     mattes = _matte_names(data, enabled_cryptomattes(depsgraph.view_layer))
     return Frame(layer, region, passes, settings, oidn, data, views, mattes)
+
+
+def _unchanged(engine: Any, depsgraph: Any) -> Unchanged:
+    """What this engine instance has exported before, without what has changed since."""
+    known = getattr(engine, "unchanged", None)
+    if known is None or not depsgraph.scene.render.use_persistent_data:
+        known = engine.unchanged = Unchanged()
+    known.begin(depsgraph)
+    return known
 
 
 def _warn_missing(engine: Any, layer: str, passes: list[Pass]) -> None:

@@ -16,7 +16,8 @@ class KomorebiRenderEngine(bpy.types.RenderEngine):
     """The entry "Komorebi" in Blender's list of render engines.
 
     An instance lives for one render (longer with Persistent Data) and holds only the frame that
-    is exported and not yet rendered; what outlives a frame is in `cache.py`.
+    is exported and not yet rendered, and names of what it has exported (`unchanged.py`); what
+    outlives a frame is in `cache.py`.
     """
 
     bl_idname = ENGINE_ID

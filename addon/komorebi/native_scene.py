@@ -2,40 +2,27 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import cache
 from .cryptomatte import name_id
+from .mesh_cache import KnownMesh, digest
 from .scene_data import (
     AnyMesh,
     CameraData,
     CurveData,
     EnvironmentImage,
+    KnownShape,
     MeshData,
+    MeshKey,
     PointData,
     SceneData,
 )
-
-
-@dataclass(slots=True)
-class KnownMesh:
-    """The cache's entry for a geometry: the mesh that was made of it last."""
-
-    mesh: Any | None = None  # core.Mesh
-    shading: bytes = b""  # digest of what is not its geometry
-    builder: str = ""
-
-    @property
-    def byte_count(self) -> int:
-        return 0 if self.mesh is None else int(self.mesh.byte_count)
 
 
 @dataclass(slots=True)
@@ -53,24 +40,14 @@ def load(core: Any, data: SceneData, expected_rays: float, threads: int, cancel:
     Arrays of a mesh are dropped as soon as the core has its own. Raises what the core raises:
     ValueError and RuntimeError with a sentence, core.Cancelled.
     """
-    # Normals are no part of the key: Blender 3.4 adds them up in the order of its threads, so that
-    # the same mesh has other ones each time, which would build its tree anew.
-    keys = [_mesh_key(core, mesh, threads) for mesh in data.meshes]
     image = data.world.image
     image_key = None if image is None else _image_key(core, image, threads)
-    cache.make_room({*keys, image_key})
-    primitives = sum(_primitive_count(mesh) for mesh in data.meshes)
+    cache.make_room({*(_key(mesh).geometry for mesh in data.meshes), image_key})
+    primitives = sum(mesh.primitive_count for mesh in data.meshes)
     builder = core.choose_builder(primitives, expected_rays)
     parts = Parts(builder=builder)
     for index, mesh in enumerate(data.meshes):
-        known = cache.get(keys[index], KnownMesh)
-        shading = _digest(core, mesh.shading(), threads)
-        if known.builder != builder and builder == "SAH":  # a better tree is wanted than is there
-            known.mesh, known.shading, known.builder = None, b"", builder
-        if known.mesh is None or known.shading != shading:
-            known.mesh = _native_mesh(core, mesh, builder, threads, cancel, known.mesh)
-            known.shading, known.builder = shading, known.builder or builder
-        parts.meshes.append(known.mesh)
+        parts.meshes.append(_mesh(core, mesh, builder, threads, cancel))
         data.meshes[index] = None  # type: ignore[call-overload]
     if image is not None and image_key is not None:
         parts.environment = cache.get(image_key, partial(_native_environment, core, image))
@@ -122,31 +99,35 @@ def tables(data: SceneData) -> dict[str, Any]:
     }
 
 
-def _digest(core: Any, arrays: Iterable[NDArray[Any] | None], threads: int) -> bytes:
-    """128 bits, equal for equal content; of use in this process alone."""
-    digest = hashlib.blake2b(digest_size=16)
-    for array in arrays:
-        digest.update(b"-" if array is None else repr((array.dtype.str, array.shape)).encode())
-        if array is not None:
-            digest.update(core.content_tags(array, threads=threads))
-    return digest.digest()
+def _key(mesh: AnyMesh) -> MeshKey:
+    assert mesh.key is not None, f"{mesh.name} has no key"
+    return mesh.key
 
 
-def _mesh_key(core: Any, mesh: AnyMesh, threads: int) -> bytes:
-    kind = b"mesh" if isinstance(mesh, MeshData) else b"points"
-    if isinstance(mesh, CurveData):
-        kind = f"curves {mesh.shape} {mesh.subdivisions}".encode()
-    return kind + _digest(core, mesh.geometry(), threads)
-
-
-def _primitive_count(mesh: AnyMesh) -> int:
-    if isinstance(mesh, MeshData):
-        return len(mesh.corner_verts) - 2 * (len(mesh.face_offsets) - 1)
-    return len(mesh.radii)
+def _mesh(core: Any, mesh: AnyMesh, builder: str, threads: int, cancel: Any) -> Any:
+    """The core's mesh of a shape; its entry in the cache is brought up to date."""
+    key = _key(mesh)
+    known = cache.get(key.geometry, KnownMesh)
+    better = builder == "SAH" and known.builder != "SAH"  # a better tree is wanted than is there
+    if isinstance(mesh, KnownShape):
+        known.mesh = mesh.mesh.rebuilt(builder, threads, cancel) if better else mesh.mesh
+    else:
+        if better:
+            known.mesh, known.shading = None, b""
+        if known.mesh is None or known.shading != key.shading:
+            known.mesh = _native_mesh(core, mesh, builder, threads, cancel, known.mesh)
+    known.shading = key.shading
+    known.builder = builder if better else known.builder or builder
+    return known.mesh
 
 
 def _native_mesh(
-    core: Any, mesh: AnyMesh, builder: str, threads: int, cancel: Any, same_geometry: Any | None
+    core: Any,
+    mesh: MeshData | CurveData | PointData,
+    builder: str,
+    threads: int,
+    cancel: Any,
+    same_geometry: Any | None,
 ) -> Any:
     if isinstance(mesh, CurveData):
         return core.Mesh.from_curves(
@@ -174,7 +155,7 @@ def _native_environment(core: Any, image: EnvironmentImage) -> Any:
 
 def _image_key(core: Any, image: EnvironmentImage, threads: int) -> bytes:
     if image.pixels is not None:
-        return b"pixels" + _digest(core, (image.pixels,), threads)
+        return b"pixels" + digest(core, (image.pixels,), threads)
     # A file is known by path, size and time of change; reading it all would cost as much as
     # loading it.
     assert image.path is not None

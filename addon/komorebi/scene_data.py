@@ -16,7 +16,15 @@ DoubleArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
 UIntArray = NDArray[np.uint32]
 BoolArray = NDArray[np.bool_]
-Arrays = tuple[NDArray[Any] | None, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MeshKey:
+    """What a shape was made from: digests of its geometry (which decides where rays hit) and of
+    its shading. Two shapes with the same geometry share a tree."""
+
+    geometry: bytes
+    shading: bytes
 
 
 @dataclass(slots=True)
@@ -34,19 +42,11 @@ class MeshData:
     smooth_faces: BoolArray | None = None  # [faces]; None: all smooth if there are normals
     face_materials: IntArray | None = None  # [faces]; None: all slot 0
     corner_uvs: FloatArray | None = None  # [corners, 2]; None: no UV map, or no pass that shows it
+    key: MeshKey | None = None
 
-    def geometry(self) -> Arrays:
-        """What decides where rays hit: with the same, two meshes share a tree."""
-        return (
-            self.positions, self.corner_verts, self.face_offsets, self.tri2corner, self.tri2face,
-        )  # fmt: skip
-
-    def shading(self) -> Arrays:
-        """Everything else but the name."""
-        return (
-            self.corner_normals, self.vertex_normals, self.smooth_faces, self.face_materials,
-            self.corner_uvs,
-        )  # fmt: skip
+    @property
+    def primitive_count(self) -> int:
+        return len(self.corner_verts) - 2 * (len(self.face_offsets) - 1)
 
 
 @dataclass(slots=True)
@@ -60,12 +60,11 @@ class CurveData:
     curve_offsets: IntArray  # [curves + 1]
     shape: str = "RIBBONS"  # or THICK
     subdivisions: int = 2  # a ribbon's segment is drawn by 2 ** subdivisions + 1 pieces
+    key: MeshKey | None = None
 
-    def geometry(self) -> Arrays:
-        return self.positions, self.radii, self.curve_offsets
-
-    def shading(self) -> Arrays:
-        return ()
+    @property
+    def primitive_count(self) -> int:
+        return len(self.radii)
 
 
 @dataclass(slots=True)
@@ -75,15 +74,27 @@ class PointData:
     name: str
     positions: FloatArray  # [points, 3]
     radii: FloatArray  # [points], not negative
+    key: MeshKey | None = None
 
-    def geometry(self) -> Arrays:
-        return self.positions, self.radii
-
-    def shading(self) -> Arrays:
-        return ()
+    @property
+    def primitive_count(self) -> int:
+        return len(self.radii)
 
 
-AnyMesh = MeshData | CurveData | PointData
+@dataclass(slots=True)
+class KnownShape:
+    """A shape that the core has already, and whose arrays were not read again."""
+
+    name: str
+    key: MeshKey
+    mesh: Any  # core.Mesh
+
+    @property
+    def primitive_count(self) -> int:
+        return int(self.mesh.primitive_count)
+
+
+AnyMesh = MeshData | CurveData | PointData | KnownShape
 
 
 @dataclass(slots=True)

@@ -162,6 +162,40 @@ std::shared_ptr<const Mesh> Mesh::flattened(const Mat4d& matrix, ThreadPool& poo
   return mesh;
 }
 
+void Mesh::take_shading(const Mesh& other) {
+  normals_ = other.normals_;
+  every_corner_ = other.every_corner_;
+  tri2smooth_ = other.tri2smooth_;
+  tri2material_ = other.tri2material_;
+  tri2uv_ = other.tri2uv_;
+  if (other.tri2normal_ == other.geometry_->tri2vtx.data()) {
+    tri2normal_ = geometry_->tri2vtx.data();
+  } else if (!every_corner_.empty()) {
+    tri2normal_ = every_corner_.data();
+  } else if (other.tri2normal_) {
+    tri2normal_ = geometry_->tri2corner.data();
+  }
+}
+
+std::shared_ptr<const Mesh> Mesh::rebuilt(Builder builder, ThreadPool& pool,
+                                          const Cancel& cancel) const {
+  if (round_) {
+    RoundGeometry same = round_->transformed(Mat4d(1.0), builder, pool, cancel);
+    return std::shared_ptr<const Mesh>(new Mesh(name_, std::move(same)));
+  }
+  const auto geometry = std::make_shared<MeshGeometry>();
+  geometry->origin = geometry_->origin;
+  geometry->vtx2xyz = geometry_->vtx2xyz;
+  geometry->tri2vtx = geometry_->tri2vtx;
+  geometry->tri2corner = geometry_->tri2corner;
+  geometry->tree = build_mesh_tree(geometry->vtx2xyz, geometry->tri2vtx, builder, pool, cancel);
+  std::shared_ptr<Mesh> mesh(new Mesh);
+  mesh->name_ = name_;
+  mesh->geometry_ = geometry;
+  mesh->take_shading(*this);
+  return mesh;
+}
+
 std::vector<std::int32_t> Mesh::tri2corner() const {
   const auto& corners = geometry_->tri2corner;
   if (!corners.empty()) return {corners.begin(), corners.end()};

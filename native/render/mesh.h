@@ -32,6 +32,10 @@ class Mesh {
   std::shared_ptr<const Mesh> flattened(const Mat4d& matrix, ThreadPool& pool,
                                         const Cancel& cancel) const;
 
+  /// The same with a tree by another builder. Throws Cancelled.
+  std::shared_ptr<const Mesh> rebuilt(Builder builder, ThreadPool& pool,
+                                      const Cancel& cancel) const;
+
   MeshView view() const;
   const std::string& name() const { return name_; }
   const Vec3d& origin() const { return round_ ? round_->origin : geometry_->origin; }
@@ -61,6 +65,7 @@ class Mesh {
 
  private:
   Mesh() = default;
+  void take_shading(const Mesh& other);
   Mesh(std::string name, RoundGeometry round)
       : name_(std::move(name)),
         geometry_(std::make_shared<const MeshGeometry>()),

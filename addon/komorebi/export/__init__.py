@@ -6,6 +6,7 @@ from collections.abc import Collection
 from typing import Any
 
 from ..scene_data import SceneData
+from ..unchanged import Unchanged
 from .camera import export_camera
 from .instance import export_instances
 from .unsupported import warn_unsupported
@@ -14,11 +15,13 @@ from .world import export_world
 
 
 def export_scene(
-    engine: Any, depsgraph: Any, view: str, sources: Collection[str] = ()
-) -> SceneData:
+    engine: Any, depsgraph: Any, view: str, sources: Collection[str] = (),
+    unchanged: Unchanged | None = None,
+) -> SceneData:  # fmt: skip
     """Everything that the view layer of `depsgraph` shows at its frame, seen by stereo `view`.
 
-    `sources` are the core's passes that are kept, which decide what they need to know.
+    `sources` are the core's passes that are kept, which decide what they need to know; `unchanged`
+    knows what an earlier frame has exported.
     """
     scene = depsgraph.scene
     warn_unsupported(engine, depsgraph)
@@ -27,5 +30,5 @@ def export_scene(
     data = SceneData(
         camera=export_camera(engine, depsgraph, view), world=export_world(engine, world)
     )
-    export_instances(engine, depsgraph, data, Wanted.by(sources))
+    export_instances(engine, depsgraph, data, Wanted.by(sources), unchanged or Unchanged())
     return data

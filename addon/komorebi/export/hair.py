@@ -1,4 +1,4 @@
-"""Hair of particle systems → CurveData: what Blender evaluated for the frame, as Cycles reads it."""
+"""Hair of particle systems → CurveData: what Blender evaluated for the frame, as Cycles has it."""
 
 from __future__ import annotations
 

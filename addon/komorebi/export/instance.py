@@ -11,6 +11,7 @@ import numpy as np
 from .. import reporting
 from ..errors import RenderCancelled
 from ..scene_data import InstanceData, ObjectData, SceneData
+from ..unchanged import Unchanged
 from .materials import MaterialExporter
 from .names import name_of
 from .shapes import NONE, TYPES, ShapeExporter
@@ -34,9 +35,11 @@ class _Group:
     slots: list[int] = field(default_factory=list)
 
 
-def export_instances(engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted) -> None:
+def export_instances(
+    engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted, unchanged: Unchanged
+) -> None:
     """Fills shapes, instances, objects, materials and what was ignored into `data`."""
-    exporter = _Exporter(engine, depsgraph, data, wanted)
+    exporter = _Exporter(engine, depsgraph, data, wanted, unchanged)
     for count, instance in enumerate(depsgraph.object_instances):
         if count % CANCEL_INTERVAL == 0 and engine.test_break():
             raise RenderCancelled
@@ -50,11 +53,13 @@ def export_instances(engine: Any, depsgraph: Any, data: SceneData, wanted: Wante
 class _Exporter:
     """One walk over the instances of a depsgraph."""
 
-    def __init__(self, engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted) -> None:
+    def __init__(
+        self, engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted, unchanged: Unchanged
+    ) -> None:
         self._engine = engine
         self._objects = data.objects
         self._object2index: dict[int, int] = {}
-        self._shapes = ShapeExporter(engine, depsgraph, data.meshes, wanted)
+        self._shapes = ShapeExporter(engine, depsgraph, data.meshes, wanted, unchanged)
         self._visibility = Visibility(depsgraph)
         self._materials = (
             MaterialExporter(depsgraph.view_layer, data.materials) if wanted.materials else None

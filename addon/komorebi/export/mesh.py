@@ -7,53 +7,85 @@ from typing import Any
 import numpy as np
 
 from .. import compat
-from ..scene_data import IntArray, MeshData
+from ..mesh_cache import digest
+from ..scene_data import FloatArray, IntArray, MeshData, MeshKey
 
 MAX_NATIVE_CORNERS = 4  # the core triangulates triangles and quads by Blender's own rule
 
 
 def export_mesh(mesh: Any, name: str, with_uvs: bool = False) -> MeshData | None:
     """The arrays of an evaluated mesh; None when it has no face."""
-    if not len(mesh.polygons):
-        return None
-    verts = compat.corner_verts(mesh)
-    offsets, order = compat.face_offsets(mesh)
-    tri2corner = tri2face = None
-    if (offsets[1:] - offsets[:-1]).max() > MAX_NATIVE_CORNERS:
-        tri2corner, tri2face = _loop_triangles(mesh)
-    smooth = compat.smooth_faces(mesh)
-    by_corner = by_vertex = None
-    if smooth.any():
-        if compat.has_corner_normals(mesh):
-            by_corner = compat.corner_normals(mesh)
-        else:
-            by_vertex = compat.vertex_normals(mesh)
+    return MeshReader(mesh, name, with_uvs).data() if len(mesh.polygons) else None
 
-    uvs = compat.corner_uvs(mesh) if with_uvs else None
 
-    if order is not None:
-        if tri2corner is not None:
-            new_corner = np.zeros(len(verts), np.int32)
-            new_corner[order] = np.arange(len(order), dtype=np.int32)
-            tri2corner = new_corner[tri2corner]
-        verts = verts[order]
-        by_corner = None if by_corner is None else by_corner[order]
-        uvs = None if uvs is None else uvs[order]
+class MeshReader:
+    """Reads an evaluated mesh that has faces: first what tells it from others, then the rest.
 
-    flat = by_corner is None and by_vertex is None
-    return MeshData(
-        name=name,
-        positions=compat.positions(mesh),
-        corner_verts=verts,
-        face_offsets=offsets,
-        tri2corner=tri2corner,
-        tri2face=tri2face,
-        corner_normals=by_corner,
-        vertex_normals=by_vertex,
-        smooth_faces=None if flat or smooth.all() else smooth,
-        face_materials=compat.face_materials(mesh),
-        corner_uvs=uvs,
-    )
+    What takes longest, normals and the triangles of faces with many corners, follows from the rest
+    and is not read when the mesh is known.
+    """
+
+    def __init__(self, mesh: Any, name: str, with_uvs: bool) -> None:
+        self._mesh = mesh
+        self._name = name
+        self._positions = compat.positions(mesh)
+        self._offsets, self._order = compat.face_offsets(mesh)
+        verts = compat.corner_verts(mesh)
+        self._verts = verts if self._order is None else verts[self._order]
+        self._smooth = compat.smooth_faces(mesh)
+        self._materials = compat.face_materials(mesh)
+        self._uvs = compat.corner_uvs(mesh) if with_uvs else None
+        self._normals: tuple[FloatArray | None, FloatArray | None] | None = None
+
+    def key(self, core: Any) -> MeshKey:
+        """Digests of all that the arrays of `data` follow from."""
+        sources = compat.normal_sources(self._mesh) if self._smooth.any() else ()
+        if sources is None:  # the normals themselves have to tell
+            sources = self._read_normals()
+        return MeshKey(
+            b"mesh" + digest(core, (self._positions, self._verts, self._offsets)),
+            digest(core, (self._smooth, self._materials, self._uvs, *sources)),
+        )
+
+    def data(self) -> MeshData:
+        order, verts = self._order, self._verts
+        tri2corner = tri2face = None
+        if (self._offsets[1:] - self._offsets[:-1]).max() > MAX_NATIVE_CORNERS:
+            tri2corner, tri2face = _loop_triangles(self._mesh)
+        by_corner, by_vertex = self._read_normals()
+        uvs = self._uvs
+        if order is not None:
+            if tri2corner is not None:
+                new_corner = np.zeros(len(verts), np.int32)
+                new_corner[order] = np.arange(len(order), dtype=np.int32)
+                tri2corner = new_corner[tri2corner]
+            by_corner = None if by_corner is None else by_corner[order]
+            uvs = None if uvs is None else uvs[order]
+        flat = by_corner is None and by_vertex is None
+        return MeshData(
+            name=self._name,
+            positions=self._positions,
+            corner_verts=verts,
+            face_offsets=self._offsets,
+            tri2corner=tri2corner,
+            tri2face=tri2face,
+            corner_normals=by_corner,
+            vertex_normals=by_vertex,
+            smooth_faces=None if flat or self._smooth.all() else self._smooth,
+            face_materials=self._materials,
+            corner_uvs=uvs,
+        )
+
+    def _read_normals(self) -> tuple[FloatArray | None, FloatArray | None]:
+        """By corner in Blender's order, or by vertex; neither where all faces are flat."""
+        if self._normals is None:
+            if not self._smooth.any():
+                self._normals = (None, None)
+            elif compat.has_corner_normals(self._mesh):
+                self._normals = (compat.corner_normals(self._mesh), None)
+            else:
+                self._normals = (None, compat.vertex_normals(self._mesh))
+        return self._normals
 
 
 def _loop_triangles(mesh: Any) -> tuple[IntArray, IntArray]:

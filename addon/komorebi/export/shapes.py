@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from .. import compat
+from .. import compat, core, mesh_cache
 from ..errors import RenderCancelled
-from ..scene_data import AnyMesh
+from ..scene_data import AnyMesh, CurveData, KnownShape, PointData
+from ..unchanged import Unchanged
 from .curves import export_curves
 from .hair import export_hair, hair_systems
-from .mesh import export_mesh
+from .mesh import MeshReader
 from .names import name_of
 from .points import export_points
 from .wanted import Wanted
@@ -21,8 +22,13 @@ NONE = -1  # the index of a shape that shows nothing
 class ShapeExporter:
     """Fills the list of meshes of one view layer."""
 
-    def __init__(self, engine: Any, depsgraph: Any, meshes: list[AnyMesh], wanted: Wanted) -> None:
+    def __init__(
+        self, engine: Any, depsgraph: Any, meshes: list[AnyMesh], wanted: Wanted,
+        unchanged: Unchanged,
+    ) -> None:  # fmt: skip
         self._engine = engine
+        self._core = core.load()
+        self._unchanged = unchanged
         self._scene = depsgraph.scene
         self._meshes = meshes
         self._wanted = wanted
@@ -49,7 +55,7 @@ class ShapeExporter:
         index = self._by_emitter.get(key)
         if index is None:
             hair = export_hair(obj, name_of(obj), self._scene)
-            index = self._by_emitter[key] = self._add(hair)
+            index = self._by_emitter[key] = self._add(self._with_key(hair))
         return index
 
     def _is_shown(self, kind: str) -> bool:
@@ -58,12 +64,40 @@ class ShapeExporter:
     def _export(self, obj: Any) -> AnyMesh | None:
         if self._engine.test_break():
             raise RenderCancelled
+        address = (obj.data.as_pointer(), obj.original.as_pointer(), self._wanted.uvs)
+        key = self._unchanged.key(address)
+        known = None if key is None else mesh_cache.find(key)
+        if key is not None and known is not None:
+            return KnownShape(name_of(obj), key, known)
+        exported = self._read(obj)
+        if exported is not None and exported.key is not None and not compat.is_deferred(obj):
+            self._unchanged.remember(address, exported.key)
+        return exported
+
+    def _read(self, obj: Any) -> AnyMesh | None:
         if obj.type == "CURVES":
-            return export_curves(obj.data, name_of(obj), self._scene)
+            return self._with_key(export_curves(obj.data, name_of(obj), self._scene))
         if obj.type == "POINTCLOUD":
-            return export_points(obj.data, name_of(obj))
+            return self._with_key(export_points(obj.data, name_of(obj)))
         with compat.mesh_of(obj) as mesh:
-            return export_mesh(mesh, name_of(obj), self._wanted.uvs)
+            return self._read_mesh(mesh, name_of(obj)) if len(mesh.polygons) else None
+
+    def _read_mesh(self, mesh: Any, name: str) -> AnyMesh:
+        reader = MeshReader(mesh, name, self._wanted.uvs)
+        key = reader.key(self._core)
+        known = mesh_cache.find(key)
+        if known is not None:
+            return KnownShape(name, key, known)
+        data = reader.data()
+        data.key = key
+        return data
+
+    def _with_key(self, data: CurveData | PointData | None) -> AnyMesh | None:
+        if data is None:
+            return None
+        data.key = mesh_cache.round_key(self._core, data)
+        known = mesh_cache.find(data.key)
+        return data if known is None else KnownShape(data.name, data.key, known)
 
     def _add(self, exported: AnyMesh | None) -> int:
         if exported is None:

@@ -1,0 +1,54 @@
+"""Which native meshes are known, by what they were made from. No bpy in here.
+
+A mesh has two digests: of what decides where rays hit, and of what decides how it is shaded. With
+both known before its arrays are all read, most of them never are.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import NDArray
+
+from . import cache
+from .scene_data import CurveData, MeshKey, PointData
+
+
+@dataclass(slots=True)
+class KnownMesh:
+    """The cache's entry for a geometry: the mesh that was made of it last."""
+
+    mesh: Any | None = None  # core.Mesh
+    shading: bytes = b""
+    builder: str = ""
+
+    @property
+    def byte_count(self) -> int:
+        return 0 if self.mesh is None else int(self.mesh.byte_count)
+
+
+def find(key: MeshKey) -> Any | None:
+    """The core's mesh of this key, if it is known."""
+    known = cache.peek(key.geometry)
+    return known.mesh if isinstance(known, KnownMesh) and known.shading == key.shading else None
+
+
+def round_key(core: Any, data: CurveData | PointData) -> MeshKey:
+    """The key of curves or points, which have no shading of their own."""
+    if isinstance(data, CurveData):
+        kind = f"curves {data.shape} {data.subdivisions}".encode()
+        return MeshKey(kind + digest(core, (data.positions, data.radii, data.curve_offsets)), b"")
+    return MeshKey(b"points" + digest(core, (data.positions, data.radii)), b"")
+
+
+def digest(core: Any, arrays: Iterable[NDArray[Any] | None], threads: int = 0) -> bytes:
+    """128 bits, equal for equal content; of use in this process alone."""
+    result = hashlib.blake2b(digest_size=16)
+    for array in arrays:
+        result.update(b"-" if array is None else repr((array.dtype.str, array.shape)).encode())
+        if array is not None:
+            result.update(core.content_tags(array, threads=threads))
+    return result.digest()
