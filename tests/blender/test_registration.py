@@ -21,7 +21,7 @@ ITEMS = {
 
 INHERITED = (
     "DATA_PT_lens", "DATA_PT_camera", "RENDER_PT_format", "RENDER_PT_color_management",
-    "WORLD_PT_context_world", "VIEWLAYER_PT_layer", "OBJECT_PT_visibility",
+    "WORLD_PT_context_world", "VIEWLAYER_PT_layer", "DATA_PT_camera_dof",
 )  # fmt: skip
 
 
@@ -60,7 +60,7 @@ def test_blenders_panels_are_inherited():
     ours = {p.__name__ for p in panels() if "KOMOREBI" in getattr(p, "COMPAT_ENGINES", ())}
     for name in INHERITED:
         assert name in ours, name
-    for name in ("DATA_PT_camera_dof", "VIEWLAYER_PT_layer_passes", "RENDER_PT_freestyle"):
+    for name in ("OBJECT_PT_visibility", "VIEWLAYER_PT_layer_passes", "DATA_PT_preview"):
         assert name not in ours, name
 
 

@@ -1,0 +1,112 @@
+# mypy: disable-error-code="misc"
+"""Render properties: hair, motion, film and what the machine may do."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+from .base import KomorebiPanel, cycles, draw_moved
+
+# The buttons under the shutter's curve: its shapes by Blender's operator, and their icons.
+SHUTTER_SHAPES = (
+    ("SMOOTH", "SMOOTHCURVE"),
+    ("ROUND", "SPHERECURVE"),
+    ("ROOT", "ROOTCURVE"),
+    ("SHARP", "SHARPCURVE"),
+    ("LINE", "LINCURVE"),
+    ("MAX", "NOCURVE"),
+)
+
+
+class KOMOREBI_RENDER_PT_curves(KomorebiPanel, bpy.types.Panel):
+    """The shape of hair strands; the settings are Cycles', as the artist made them there."""
+
+    bl_label = "Curves"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return super().poll(context) and cycles(context.scene, "cycles_curves") is not None
+
+    def draw(self, context: Any) -> None:
+        curves = context.scene.cycles_curves
+        column = self.column()
+        column.prop(curves, "shape")
+        if curves.shape == "RIBBONS":
+            column.prop(curves, "subdivisions")
+
+
+class KOMOREBI_RENDER_PT_motion_blur(KomorebiPanel, bpy.types.Panel):
+    bl_label = "Motion Blur"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context: Any) -> None:
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context: Any) -> None:
+        scene, render = context.scene, context.scene.render
+        column = self.column()
+        column.active = render.use_motion_blur
+        draw_moved(column, "motion_blur_position", render, cycles(scene), text="Position")
+        column.prop(render, "motion_blur_shutter")
+
+
+class KOMOREBI_RENDER_PT_motion_blur_curve(KomorebiPanel, bpy.types.Panel):
+    bl_label = "Shutter Curve"
+    bl_parent_id = "KOMOREBI_RENDER_PT_motion_blur"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        render = context.scene.render
+        column = self.column()
+        column.active = render.use_motion_blur
+        column.template_curve_mapping(render, "motion_blur_shutter_curve")
+        row = column.row(align=True)
+        for shape, icon in SHUTTER_SHAPES:
+            row.operator("render.shutter_curve_preset", icon=icon, text="").shape = shape
+
+
+class KOMOREBI_RENDER_PT_film(KomorebiPanel, bpy.types.Panel):
+    bl_label = "Film"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        self.column().prop(context.scene.render, "film_transparent", text="Transparent")
+
+
+class KOMOREBI_RENDER_PT_film_pixel_filter(KomorebiPanel, bpy.types.Panel):
+    bl_label = "Pixel Filter"
+    bl_parent_id = "KOMOREBI_RENDER_PT_film"
+
+    def draw(self, context: Any) -> None:
+        settings = context.scene.komorebi
+        column = self.column()
+        column.prop(settings, "pixel_filter", text="Type")
+        if settings.pixel_filter != "BOX":
+            column.prop(settings, "filter_width")
+
+
+class KOMOREBI_RENDER_PT_performance(KomorebiPanel, bpy.types.Panel):
+    bl_label = "Performance"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        render = context.scene.render
+        column = self.column()
+        column.prop(render, "threads_mode")
+        sub = column.column()
+        sub.enabled = render.threads_mode == "FIXED"
+        sub.prop(render, "threads")
+        column.prop(render, "use_persistent_data", text="Persistent Data")
+
+
+CLASSES = (
+    KOMOREBI_RENDER_PT_curves,
+    KOMOREBI_RENDER_PT_motion_blur,
+    KOMOREBI_RENDER_PT_motion_blur_curve,
+    KOMOREBI_RENDER_PT_film,
+    KOMOREBI_RENDER_PT_film_pixel_filter,
+    KOMOREBI_RENDER_PT_performance,
+)
