@@ -7,7 +7,7 @@ from typing import Any
 
 import bpy
 
-from .base import KomorebiPanel, cycles, draw_moved
+from .base import KomorebiPanel, cycles, draw_moved, owner_of
 
 # The buttons under the shutter's curve: its shapes by Blender's operator, and their icons.
 SHUTTER_SHAPES = (
@@ -102,6 +102,27 @@ class KOMOREBI_RENDER_PT_performance(KomorebiPanel, bpy.types.Panel):
         column.prop(render, "use_persistent_data", text="Persistent Data")
 
 
+class KOMOREBI_RENDER_PT_performance_compositor(KomorebiPanel, bpy.types.Panel):
+    """Blender's own settings, in releases that have them."""
+
+    bl_label = "Compositor"
+    bl_parent_id = "KOMOREBI_RENDER_PT_performance"
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        render = context.scene.render
+        return super().poll(context) and owner_of("compositor_device", render) is not None
+
+    def draw(self, context: Any) -> None:
+        render = context.scene.render
+        column = self.column()
+        column.prop(render, "compositor_device", text="Device")
+        draw_moved(column, "compositor_precision", render, text="Precision")
+        draw_moved(column, "compositor_denoise_device", render, text="Denoising Device")
+        draw_moved(column, "compositor_denoise_preview_quality", render, text="Preview Quality")
+        draw_moved(column, "compositor_denoise_final_quality", render, text="Final Quality")
+
+
 CLASSES = (
     KOMOREBI_RENDER_PT_curves,
     KOMOREBI_RENDER_PT_motion_blur,
@@ -109,4 +130,5 @@ CLASSES = (
     KOMOREBI_RENDER_PT_film,
     KOMOREBI_RENDER_PT_film_pixel_filter,
     KOMOREBI_RENDER_PT_performance,
+    KOMOREBI_RENDER_PT_performance_compositor,
 )
