@@ -23,6 +23,10 @@ REPLACED = {
     "CYCLES_RENDER_PT_sampling_advanced": "KOMOREBI_RENDER_PT_sampling_advanced",
     "CYCLES_RENDER_PT_sampling_advanced_sample_subset": "KOMOREBI_RENDER_PT_sampling_advanced",
     "CYCLES_RENDER_PT_curves": "KOMOREBI_RENDER_PT_curves",
+    "CYCLES_RENDER_PT_simplify": "KOMOREBI_RENDER_PT_simplify",
+    "CYCLES_RENDER_PT_simplify_viewport": "KOMOREBI_RENDER_PT_simplify_viewport",
+    "CYCLES_RENDER_PT_simplify_render": "KOMOREBI_RENDER_PT_simplify_render",
+    "CYCLES_VIEW3D_PT_simplify_greasepencil": "KOMOREBI_RENDER_PT_simplify_greasepencil",
     "CYCLES_RENDER_PT_motion_blur": "KOMOREBI_RENDER_PT_motion_blur",
     "CYCLES_RENDER_PT_motion_blur_curve": "KOMOREBI_RENDER_PT_motion_blur_curve",
     "CYCLES_RENDER_PT_film": "KOMOREBI_RENDER_PT_film",
@@ -48,6 +52,7 @@ REPLACED = {
     "CYCLES_LIGHT_PT_light": "KOMOREBI_LIGHT_PT_light",
     "CYCLES_LIGHT_PT_beam_shape": "KOMOREBI_LIGHT_PT_light",
     "CYCLES_WORLD_PT_surface": "KOMOREBI_WORLD_PT_surface",
+    "CYCLES_WORLD_PT_mist": "KOMOREBI_WORLD_PT_mist",
     "CYCLES_WORLD_PT_ray_visibility": "KOMOREBI_WORLD_PT_ray_visibility",
     "CYCLES_MATERIAL_PT_surface": "KOMOREBI_MATERIAL_PT_surface",
     "CYCLES_MATERIAL_PT_settings": "KOMOREBI_MATERIAL_PT_settings",
@@ -60,15 +65,10 @@ FILLED_BY_PASSES = {
 }
 # Cycles' class → Blender's own, which we show as well.
 ADOPTED = {
-    "CYCLES_RENDER_PT_simplify": "RENDER_PT_simplify",
-    "CYCLES_RENDER_PT_simplify_viewport": "RENDER_PT_simplify_viewport",
-    "CYCLES_RENDER_PT_simplify_render": "RENDER_PT_simplify_render",
-    "CYCLES_VIEW3D_PT_simplify_greasepencil": "RENDER_PT_simplify_greasepencil",
     "CYCLES_PT_post_processing": "RENDER_PT_post_processing",
     "CYCLES_CAMERA_PT_dof": "DATA_PT_camera_dof",
     "CYCLES_CAMERA_PT_dof_aperture": "DATA_PT_camera_dof_aperture",
     "CYCLES_PT_context_material": "EEVEE_MATERIAL_PT_context_material",
-    "CYCLES_WORLD_PT_mist": "EEVEE_WORLD_PT_mist",
 }
 LEFT_OUT = {
     "CYCLES_PT_sampling_presets": "presets of Cycles' settings",

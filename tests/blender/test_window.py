@@ -53,14 +53,15 @@ bpy.app.timers.register(guarded, first_interval=1.0, persistent=True)
 
 
 @contextlib.contextmanager
-def screen():
-    """A display of its own; ends with the test."""
+def screen(size="960x540x24", frame_buffer=None):
+    """A display of its own; ends with the test. Its pixels are a file in `frame_buffer`, if given."""
     program = shutil.which("Xvfb")
     if program is None:
         raise support.Skip("Xvfb is not installed")
     reading, writing = os.pipe()
     server = subprocess.Popen(
-        [program, "-displayfd", str(writing), "-screen", "0", "960x540x24", "-nolisten", "tcp"],
+        [program, "-displayfd", str(writing), "-screen", "0", size, "-nolisten", "tcp",
+         *(["-fbdir", str(frame_buffer)] if frame_buffer else [])],
         pass_fds=(writing,), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     )  # fmt: skip
     os.close(writing)

@@ -19,13 +19,16 @@ EXCLUDED = {
     "NODE_DATA_PT_spot": "lamps have a panel of ours",
     "OBJECT_PT_shading": "a panel of ours; this one brings light linking, and lamps give no light",
     "OBJECT_PT_visibility": "a panel of ours, with the rays that are traced",
+    "RENDER_PT_simplify": "a panel of ours: this one would stand above Sampling",
+    "RENDER_PT_simplify_greasepencil": "a panel of ours",
+    "RENDER_PT_simplify_render": "a panel of ours",
+    "RENDER_PT_simplify_viewport": "a panel of ours",
 }
 # Made for other engines by their own word, but good for any.
 BY_NAME = (
     "DATA_PT_camera_dof",
     "DATA_PT_camera_dof_aperture",
     "EEVEE_MATERIAL_PT_context_material",
-    "EEVEE_WORLD_PT_mist",
     "VIEWLAYER_PT_override",
 )
 

@@ -45,6 +45,7 @@ class KOMOREBI_CAMERA_PT_panorama(KomorebiPanel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         camera = context.camera
         column = self.column()
+        self.layout.use_property_decorate = True  # as in the panel that it is part of
         settings = owner_of("panorama_type", camera, cycles(camera))
         if settings is None:
             column.label(text="Panoramas are set by Cycles' add-on, which is off", icon="INFO")

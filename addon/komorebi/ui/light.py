@@ -9,7 +9,8 @@ import bpy
 
 from .base import KomorebiPanel
 
-SIZES = {"POINT": "shadow_soft_size", "SPOT": "shadow_soft_size", "SUN": "angle"}
+SIZES = {"POINT": ("shadow_soft_size", "Radius"), "SPOT": ("shadow_soft_size", "Radius"),
+         "SUN": ("angle", "Angle")}  # fmt: skip
 
 
 class KOMOREBI_LIGHT_PT_light(KomorebiPanel, bpy.types.Panel):
@@ -34,7 +35,8 @@ class KOMOREBI_LIGHT_PT_light(KomorebiPanel, bpy.types.Panel):
             if light.shape in {"RECTANGLE", "ELLIPSE"}:
                 sub.prop(light, "size_y")
             return
-        column.prop(light, SIZES[light.type])
+        name, label = SIZES[light.type]
+        column.prop(light, name, text=label)
         if light.type == "SPOT":
             column.prop(light, "spot_size")
             column.prop(light, "spot_blend")

@@ -1,11 +1,12 @@
 # mypy: disable-error-code="misc"
-"""Render properties: hair, motion, film and what the machine may do."""
+"""Render properties: hair, simplification, motion, film and what the machine may do."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import bpy
+from bl_ui.properties_grease_pencil_common import GreasePencilSimplifyPanel
 
 from .base import KomorebiPanel, cycles, draw_moved, owner_of
 
@@ -36,6 +37,55 @@ class KOMOREBI_RENDER_PT_curves(KomorebiPanel, bpy.types.Panel):
         column.prop(curves, "shape")
         if curves.shape == "RIBBONS":
             column.prop(curves, "subdivisions")
+
+
+class KOMOREBI_RENDER_PT_simplify(KomorebiPanel, bpy.types.Panel):
+    """Blender's own settings; its own panel would stand above Sampling."""
+
+    bl_label = "Simplify"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context: Any) -> None:
+        self.layout.prop(context.scene.render, "use_simplify", text="")
+
+    def draw(self, context: Any) -> None:
+        pass  # all of it is in the panels below
+
+
+class KOMOREBI_RENDER_PT_simplify_viewport(KomorebiPanel, bpy.types.Panel):
+    bl_label = "Viewport"
+    bl_parent_id = "KOMOREBI_RENDER_PT_simplify"
+
+    def draw(self, context: Any) -> None:
+        render = context.scene.render
+        column = self.column()
+        column.active = render.use_simplify
+        column.prop(render, "simplify_subdivision", text="Max Subdivision")
+        column.prop(render, "simplify_child_particles", text="Child Particles")
+        column.prop(render, "simplify_volumes", text="Volume Resolution")
+        draw_moved(column, "use_simplify_normals", render, text="Normals")
+
+
+class KOMOREBI_RENDER_PT_simplify_render(KomorebiPanel, bpy.types.Panel):
+    bl_label = "Render"
+    bl_parent_id = "KOMOREBI_RENDER_PT_simplify"
+
+    def draw(self, context: Any) -> None:
+        render = context.scene.render
+        column = self.column()
+        column.active = render.use_simplify
+        column.prop(render, "simplify_subdivision_render", text="Max Subdivision")
+        column.prop(render, "simplify_child_particles_render", text="Child Particles")
+
+
+class KOMOREBI_RENDER_PT_simplify_greasepencil(
+    KomorebiPanel, GreasePencilSimplifyPanel, bpy.types.Panel
+):
+    """Drawn by Blender's own function."""
+
+    bl_label = "Grease Pencil"
+    bl_parent_id = "KOMOREBI_RENDER_PT_simplify"
+    bl_options = {"DEFAULT_CLOSED"}
 
 
 class KOMOREBI_RENDER_PT_motion_blur(KomorebiPanel, bpy.types.Panel):
@@ -125,6 +175,10 @@ class KOMOREBI_RENDER_PT_performance_compositor(KomorebiPanel, bpy.types.Panel):
 
 CLASSES = (
     KOMOREBI_RENDER_PT_curves,
+    KOMOREBI_RENDER_PT_simplify,
+    KOMOREBI_RENDER_PT_simplify_viewport,
+    KOMOREBI_RENDER_PT_simplify_render,
+    KOMOREBI_RENDER_PT_simplify_greasepencil,
     KOMOREBI_RENDER_PT_motion_blur,
     KOMOREBI_RENDER_PT_motion_blur_curve,
     KOMOREBI_RENDER_PT_film,

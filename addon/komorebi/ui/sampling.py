@@ -59,7 +59,8 @@ class KOMOREBI_RENDER_PT_sampling_render_denoise(KomorebiPanel, bpy.types.Panel)
         found = library.find()
         column = self.column()
         column.active = context.scene.komorebi.use_denoising
-        for line in textwrap.wrap(found.missing or f"Open Image Denoise: {found.path}", 60):
+        text = found.missing or f"Open Image Denoise: {found.path}"
+        for line in textwrap.wrap(text, 60, break_on_hyphens=False):
             column.label(text=line)
 
 

@@ -33,6 +33,24 @@ class KOMOREBI_WORLD_PT_ambient_occlusion(WorldPanel, bpy.types.Panel):
         self.column().prop(context.world.light_settings, "distance")
 
 
+class KOMOREBI_WORLD_PT_mist(WorldPanel, bpy.types.Panel):
+    bl_label = "Mist Pass"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return super().poll(context) and any(
+            layer.use_pass_mist for layer in context.scene.view_layers
+        )
+
+    def draw(self, context: Any) -> None:
+        mist = context.world.mist_settings
+        column = self.column(align=True)
+        column.prop(mist, "start")
+        column.prop(mist, "depth")
+        self.column().prop(mist, "falloff")
+
+
 class KOMOREBI_WORLD_PT_ray_visibility(WorldPanel, bpy.types.Panel):
     """The rays that there are; the settings are Cycles'."""
 
@@ -52,5 +70,6 @@ class KOMOREBI_WORLD_PT_ray_visibility(WorldPanel, bpy.types.Panel):
 CLASSES = (
     KOMOREBI_WORLD_PT_surface,
     KOMOREBI_WORLD_PT_ambient_occlusion,
+    KOMOREBI_WORLD_PT_mist,
     KOMOREBI_WORLD_PT_ray_visibility,
 )
