@@ -71,6 +71,8 @@ def subjects():
     cube.material_slots[0].material = plain
     yield "material without nodes", context_of(cube)
     yield "camera", context_of(camera)
+    camera.data.sensor_fit = "VERTICAL"
+    yield "camera with a sensor's height", context_of(camera)
     camera.data.type = "ORTHO"
     yield "orthographic camera", context_of(camera)
     camera.data.type = "PANO"

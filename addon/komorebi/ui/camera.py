@@ -44,8 +44,8 @@ class KOMOREBI_CAMERA_PT_panorama(KomorebiPanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         camera = context.camera
-        column = self.column()
-        self.layout.use_property_decorate = True  # as in the panel that it is part of
+        self.layout.use_property_split = True  # and with dots, as in the panel that it is part of
+        column = self.layout.column()
         settings = owner_of("panorama_type", camera, cycles(camera))
         if settings is None:
             column.label(text="Panoramas are set by Cycles' add-on, which is off", icon="INFO")
