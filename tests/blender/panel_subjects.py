@@ -19,11 +19,12 @@ DATA_MEMBERS = {
 def context_of(obj=None, **more):
     """The context of the properties editor while `obj` is active."""
     scene = bpy.context.scene
-    members = dict(
-        engine=scene.render.engine, scene=scene, view_layer=scene.view_layers[0],
-        world=scene.world, space_data=SPACE, region=types.SimpleNamespace(width=400, height=900),
-        object=obj, active_object=obj, mode="OBJECT", collection=scene.collection,
-    )  # fmt: skip
+    members = {
+        "engine": scene.render.engine, "scene": scene, "view_layer": scene.view_layers[0],
+        "world": scene.world, "space_data": SPACE, "collection": scene.collection,
+        "region": types.SimpleNamespace(width=400, height=900),
+        "object": obj, "active_object": obj, "mode": "OBJECT",
+    }  # fmt: skip
     if obj is not None:
         member = DATA_MEMBERS.get(obj.type)
         if member:

@@ -1,6 +1,6 @@
-"""docs/panels.md from the tables in cycles_panels.py and the add-on's list of what it does not adopt.
+"""Writes docs/panels.md from the tables here (cycles_panels.py) and in the add-on (adopted.py).
 
-    python3 tests/blender/panels_document.py        writes the document; test_panels.py checks it
+Run it with any Python after a change of those; test_panels.py checks that it has been.
 """
 
 import ast

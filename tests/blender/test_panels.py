@@ -93,7 +93,9 @@ def test_what_replaces_a_panel_is_drawn():
 
 def test_every_panel_of_ours_is_drawn_or_waits_for_passes():
     drawn = draw_everywhere()
-    here = {"KOMOREBI_VIEWLAYER_PT_override"} if hasattr(bpy.types, "VIEWLAYER_PT_override") else set()
+    here = set()
+    if hasattr(bpy.types, "VIEWLAYER_PT_override"):
+        here.add("KOMOREBI_VIEWLAYER_PT_override")
     if "compositor_device" not in bpy.context.scene.render.bl_rna.properties:
         here.add("KOMOREBI_RENDER_PT_performance_compositor")
     for group, cls in (("LIGHT", "light"), ("CRYPTOMATTE", "cryptomatte")):
@@ -161,7 +163,7 @@ def test_every_pass_can_be_switched_on():
     reached = set(always)
     for toggle in pass_toggles.TOGGLES:
         owner = toggle.find_owner(context)
-        if owner is not None:
+        if owner is not None and not toggle.by_blender:
             before = getattr(owner, toggle.name)
             setattr(owner, toggle.name, True)
             gained = {p.name for p in passes.enabled_passes(scene, layer)} - always

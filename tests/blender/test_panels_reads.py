@@ -48,9 +48,8 @@ def attributes_read():
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Attribute):
                 found.setdefault(node.attr, path.name)
-            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-                if node.value.isidentifier():  # getattr(obj, "visible_camera")
-                    found.setdefault(node.value, path.name)
+            elif isinstance(node, ast.Constant) and str(node.value).isidentifier():
+                found.setdefault(node.value, path.name)  # getattr(obj, "visible_camera")
     return found
 
 
@@ -69,13 +68,13 @@ def drawn_names():
     """Names of properties in all that is shown, Blender's panels included."""
     shown = [p for p in bpy.types.Panel.__subclasses__()
              if "KOMOREBI" in getattr(p, "COMPAT_ENGINES", ())]  # fmt: skip
-    free = [getattr(bpy.types, n) for n in ("RENDER_PT_context", "SCENE_PT_scene", "OBJECT_PT_instancing")]
+    free = [bpy.types.RENDER_PT_context, bpy.types.SCENE_PT_scene, bpy.types.OBJECT_PT_instancing]
     names = set()
     for _, context in panel_subjects.subjects():
         for panel in (*ui.CLASSES, *shown, *free):
             # Some of Blender's own ask for more of a context than there is without a window.
-            quiet = contextlib.nullcontext() if panel in ui.CLASSES else contextlib.suppress(Exception)
-            with quiet:
+            forgiven = () if panel in ui.CLASSES else (Exception,)
+            with contextlib.suppress(*forgiven):
                 names |= {name for _, name in recorder.draw(panel, context) or ()}
     return names
 

@@ -17,7 +17,9 @@ from test_window import screen
 WIDTH, HEIGHT = 800, 1500
 # What Blender prints when a panel raises or names a property, an operator or an icon that is not.
 WRONG = re.compile(r"Traceback|Error|not found|unknown (?:icon|operator)|rna_ui", re.IGNORECASE)
-NOISE = re.compile(r"EGL|libEGL|MESA|XOpenIM|ALSA|mounted file-systems|GHOST|WAYLAND", re.IGNORECASE)
+NOISE = re.compile(
+    r"EGL|libEGL|MESA|XOpenIM|ALSA|mounted file-systems|GHOST|WAYLAND", re.IGNORECASE
+)
 
 
 def frame(folder):

@@ -14,7 +14,7 @@ from typing import Any
 from .base import ENGINE_ID
 
 try:
-    from nodeitems_builtins import shader_node_categories  # type: ignore[import-not-found]
+    from nodeitems_builtins import shader_node_categories  # type: ignore[attr-defined]
 except ImportError:
     shader_node_categories = ()
 

@@ -16,6 +16,7 @@ class Toggle:
     name: str
     label: str
     heading: str = ""  # left of it and of those after it that have the same
+    by_blender: bool = False  # Blender makes the pass, and the engine's table does not name it
 
     def find_owner(self, context: Any) -> Any | None:
         """What has the property, or None in releases (or without add-ons) that lack it."""
@@ -27,6 +28,7 @@ TOGGLES = (
     Toggle("DATA", "view_layer", "use_pass_z", "Depth"),
     Toggle("DATA", "view_layer", "use_pass_normal", "Normal"),
     Toggle("DATA", "view_layer.komorebi", "pass_debug_sample_count", "Sample Count", "Debug"),
+    Toggle("DATA", "view_layer", "use_pass_grease_pencil", "Grease Pencil", by_blender=True),
 )
 
 
