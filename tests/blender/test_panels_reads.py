@@ -55,10 +55,13 @@ def attributes_read():
 
 def settings():
     """{name: [type]} of all properties that a user may change, of the types with settings."""
+    groups = {cls.__name__: cls for cls in bpy.types.PropertyGroup.__subclasses__()}
     found = {}
     for name in SETTINGS:
-        cls = getattr(bpy.types, name, None)
-        for p in () if cls is None else cls.bl_rna.properties:
+        if name == "CyclesCameraSettings" and name not in groups:
+            continue  # in 3.4 alone: later its properties are the camera's own
+        cls = getattr(bpy.types, name, None) or groups[name]
+        for p in cls.bl_rna.properties:
             if not p.is_readonly and not p.is_hidden:
                 found.setdefault(p.identifier, []).append(name)
     return found
