@@ -2,8 +2,8 @@
 
     blender ... -P tests/blender/properties_tabs.py -- FOLDER
 
-For each subject and tab it shows the editor in place of the 3D view, writes the name of the tab to
-FOLDER/shown and waits until the test has taken FOLDER/shown away (so that it can keep a picture).
+For each subject and tab it shows the editor in place of the 3D view, writes the name of the tab and
+the editor's place (x and y from the bottom left, width, height) to FOLDER/shown and waits until the test has taken FOLDER/shown away (so that it can keep a picture).
 Errors in panels are what Blender prints; the last line is DONE and the number of tabs.
 """
 
@@ -94,7 +94,8 @@ class Show:
         if self.wait:
             self.wait -= 1
             if self.wait == 0:
-                mark.write_text(self.name)
+                area = largest()
+                mark.write_text(f"{self.name} {area.x} {area.y} {area.width} {area.height}")
             return 0.1
         try:
             subject, tab, change = next(self.steps)

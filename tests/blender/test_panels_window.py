@@ -32,8 +32,9 @@ def keep(pixels, name):
     target = os.environ.get("KOMOREBI_KEEP")
     if not target:
         return
-    image = bpy.data.images.new(name, WIDTH, HEIGHT)
-    rgba = np.ones((HEIGHT, WIDTH, 4), np.float32)
+    height, width = pixels.shape[:2]
+    image = bpy.data.images.new(name, width, height)
+    rgba = np.ones((height, width, 4), np.float32)
     rgba[:, :, :3] = pixels[::-1] / 255
     image.pixels.foreach_set(rgba.reshape(-1))
     image.filepath_raw, image.file_format = str(Path(target) / f"{name}.png"), "PNG"
@@ -45,8 +46,11 @@ def watch(folder, pictures, ended):
     """Takes what each tab shows, and lets the script go on."""
     mark = folder / "shown"
     while not ended.is_set():
-        if mark.exists() and (name := mark.read_text()):
-            pictures[name] = frame(folder).copy()
+        if mark.exists() and (text := mark.read_text()):
+            name, *place = text.split()
+            x, y, width, height = map(int, place)
+            top = HEIGHT - y - height
+            pictures[name] = frame(folder)[top : top + height, x : x + width].copy()
             mark.unlink()
         time.sleep(0.02)
 
@@ -75,4 +79,6 @@ def test_every_tab_is_drawn(folder):
     assert not wrong, done
     assert len(pictures) == int(re.search(r"DONE (\d+)", done.output)[1]), list(pictures)
     for name, pixels in pictures.items():
-        assert len(np.unique(pixels[60:].reshape(-1, 3), axis=0)) > 20, f"{name} is empty"
+        # Words are brighter than anything else below the editor's header and path, beside its tabs.
+        words = (pixels[65:, 60:].min(2) > 150).sum()
+        assert words > 100, f"{name} is empty: {words} bright pixels"

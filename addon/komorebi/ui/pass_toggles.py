@@ -27,8 +27,8 @@ class Toggle:
 TOGGLES = (
     Toggle("DATA", "view_layer", "use_pass_z", "Depth"),
     Toggle("DATA", "view_layer", "use_pass_normal", "Normal"),
-    Toggle("DATA", "view_layer.komorebi", "pass_debug_sample_count", "Sample Count", "Debug"),
     Toggle("DATA", "view_layer", "use_pass_grease_pencil", "Grease Pencil", by_blender=True),
+    Toggle("DATA", "view_layer.komorebi", "pass_debug_sample_count", "Sample Count", "Debug"),
 )
 
 

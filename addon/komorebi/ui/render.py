@@ -157,6 +157,7 @@ class KOMOREBI_RENDER_PT_performance_compositor(KomorebiPanel, bpy.types.Panel):
 
     bl_label = "Compositor"
     bl_parent_id = "KOMOREBI_RENDER_PT_performance"
+    bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context: Any) -> bool:
