@@ -22,6 +22,9 @@ ITEMS = {
 INHERITED = (
     "DATA_PT_lens", "DATA_PT_camera", "RENDER_PT_format", "RENDER_PT_color_management",
     "WORLD_PT_context_world", "VIEWLAYER_PT_layer", "DATA_PT_camera_dof",
+    "DATA_PT_camera_stereoscopy", "PARTICLE_PT_render", "PARTICLE_PT_hair_shape", "RENDER_PT_gpencil",
+    "RENDER_PT_freestyle", "VIEWLAYER_PT_freestyle", "MATERIAL_PT_freestyle_line",
+    "EEVEE_MATERIAL_PT_context_material", "RENDER_PT_post_processing",
 )  # fmt: skip
 
 
