@@ -41,6 +41,8 @@ REPLACED = {
     ),
     "CYCLES_RENDER_PT_passes": "KOMOREBI_VIEWLAYER_PT_passes",
     "CYCLES_RENDER_PT_passes_data": "KOMOREBI_VIEWLAYER_PT_passes_data",
+    "CYCLES_RENDER_PT_passes_light": "KOMOREBI_VIEWLAYER_PT_passes_light",
+    "CYCLES_RENDER_PT_passes_crypto": "KOMOREBI_VIEWLAYER_PT_passes_cryptomatte",
     "CYCLES_RENDER_PT_passes_aov": "KOMOREBI_VIEWLAYER_PT_passes_aov",
     "CYCLES_RENDER_PT_filter": "KOMOREBI_VIEWLAYER_PT_filter",
     "CYCLES_RENDER_PT_override": "KOMOREBI_VIEWLAYER_PT_override",
@@ -57,11 +59,6 @@ REPLACED = {
     "CYCLES_MATERIAL_PT_surface": "KOMOREBI_MATERIAL_PT_surface",
     "CYCLES_MATERIAL_PT_settings": "KOMOREBI_MATERIAL_PT_settings",
     "draw_device": "draw_method",
-}
-# Groups of passes that the table of passes does not fill yet: drawn as soon as it does.
-FILLED_BY_PASSES = {
-    "CYCLES_RENDER_PT_passes_light": "KOMOREBI_VIEWLAYER_PT_passes_light",
-    "CYCLES_RENDER_PT_passes_crypto": "KOMOREBI_VIEWLAYER_PT_passes_cryptomatte",
 }
 # Cycles' class → Blender's own, which we show as well.
 ADOPTED = {

@@ -47,10 +47,6 @@ def text():
     pairs = lambda names: [(code(k), code(v)) for k, v in sorted(names.items())]  # noqa: E731
     lines = [HEAD.rstrip("\n")]
     lines += rows("Replaced by panels of ours", ("Cycles", "Komorebi"), pairs(table.REPLACED))
-    lines += rows(
-        "Replaced, and shown once such passes are there",
-        ("Cycles", "Komorebi"), pairs(table.FILLED_BY_PASSES),
-    )  # fmt: skip
     lines += rows("Blender's own are shown instead", ("Cycles", "Blender"), pairs(table.ADOPTED))
     lines += rows("Left out", ("Cycles", "why"), pairs(table.LEFT_OUT))
     lines += rows(

@@ -13,8 +13,8 @@ import panel_recorder as recorder
 import panel_subjects
 import panels_document
 import support
-from komorebi import ui
-from komorebi.ui import adopted, camera, menus, pass_toggles, view_layer
+from komorebi import passes, ui
+from komorebi.ui import adopted, camera, menus, view_layer
 
 
 def subclasses(cls):
@@ -70,7 +70,7 @@ def with_children(cls_name, drawn):
 
 
 def test_every_class_of_cycles_has_its_line_in_the_table():
-    tables = (table.REPLACED, table.FILLED_BY_PASSES, table.ADOPTED, table.LEFT_OUT)
+    tables = (table.REPLACED, table.ADOPTED, table.LEFT_OUT)
     known = [name for names in tables for name in names]
     assert len(known) == len(set(known)), "a class stands in two tables"
     names = set(names_of_cycles())
@@ -91,16 +91,15 @@ def test_what_replaces_a_panel_is_drawn():
             assert "KOMOREBI" in engines(panel), f"{theirs}: {ours} is not shown"
 
 
-def test_every_panel_of_ours_is_drawn_or_waits_for_passes():
+def test_every_panel_of_ours_is_drawn_or_has_nothing_to_show():
     drawn = draw_everywhere()
     here = set()
     if hasattr(bpy.types, "VIEWLAYER_PT_override"):
         here.add("KOMOREBI_VIEWLAYER_PT_override")
     if "compositor_device" not in bpy.context.scene.render.bl_rna.properties:
         here.add("KOMOREBI_RENDER_PT_performance_compositor")
-    for group, cls in (("LIGHT", "light"), ("CRYPTOMATTE", "cryptomatte")):
-        if not any(t.group == group for t in pass_toggles.TOGGLES):
-            here.add(f"KOMOREBI_VIEWLAYER_PT_passes_{cls}")
+    if not view_layer.toggles("OTHER", bpy.context.view_layer):
+        here.add("KOMOREBI_VIEWLAYER_PT_passes_other")
     empty = {c.__name__ for c in ui.CLASSES if not with_children(c.__name__, drawn)}
     assert empty == here, empty ^ here
 
@@ -154,28 +153,24 @@ def test_all_kinds_of_panorama_have_their_settings():
     assert there == {name for kind in kinds for name in camera.PANORAMAS[kind]}
 
 
-def test_every_pass_can_be_switched_on():
-    from komorebi import passes
-
+def test_every_pass_that_is_filled_can_be_switched_on():
     scene, layer = bpy.context.scene, bpy.context.view_layer
-    context = recorder.Context(scene=scene, view_layer=layer)
+    groups = [cls.group for cls in view_layer.CLASSES if hasattr(cls, "group")]
+    shown = [toggle for group in groups for toggle in view_layer.toggles(group, layer)]
     always = {p.name for p in passes.enabled_passes(scene, layer)}
-    reached = set(always)
-    for toggle in pass_toggles.TOGGLES:
-        owner = toggle.find_owner(context)
-        if owner is not None and not toggle.by_blender:
-            before = getattr(owner, toggle.name)
-            setattr(owner, toggle.name, True)
-            gained = {p.name for p in passes.enabled_passes(scene, layer)} - always
-            assert gained, f"{toggle.name} switches no pass on"
-            reached |= gained
-            setattr(owner, toggle.name, before)
-    scene.komorebi.use_denoising = True  # the other way to a pass: it keeps the noisy picture
-    reached |= {p.name for p in passes.enabled_passes(scene, layer)}
-    assert reached == {p.name for p in passes.PASSES}
-    assert {t.group for t in pass_toggles.TOGGLES} <= {
-        cls.group for cls in view_layer.CLASSES if hasattr(cls, "group")
-    }
+    reached = set()
+    for owner, name, _ in shown:
+        before = getattr(owner, name)
+        setattr(owner, name, True)
+        gained = {p.name for p in passes.enabled_passes(scene, layer)} - always
+        assert gained or name == view_layer.GREASE_PENCIL[0], f"{name} switches no pass on"
+        reached |= gained
+        setattr(owner, name, before)
+    filled = {switch.name for switch in passes.SWITCHES if switch.source}
+    assert filled <= reached | always, filled - reached
+    for _, _, name in passes.CRYPTOMATTES:
+        assert f"{name}00" in reached
+    assert {switch.group for switch in passes.SWITCHES} - {""} <= set(groups)
 
 
 def test_outliner_offers_indirect_only():

@@ -12,7 +12,7 @@ import bpy
 import komorebi
 import panel_recorder as recorder
 import panel_subjects
-from komorebi import ui
+from komorebi import passes, ui
 
 ADDON = Path(komorebi.__file__).parent
 # Types with settings, and what of them is no setting: names, trees, what code reads of other types.
@@ -34,9 +34,14 @@ ELSEWHERE = {
 NO_SETTING = {  # names of other types too, which are what is read
     "height": "of an image, read in native_scene.py",
     "location": "of a node",
+    "material": "of a slot, not of particles",
     "name": "what a message says",
     "scale": "of a node",
 }
+
+
+# Passes that a file's compositor may ask for and that nothing fills: told to Blender, not shown.
+UNFILLED = {switch.prop for switch in passes.SWITCHES if not switch.group}
 
 
 def attributes_read():
@@ -87,6 +92,6 @@ def test_all_that_is_read_can_be_set():
     missing = {
         f"{name} of {' or '.join(types)}, read in {read[name]}"
         for name, types in settings().items()
-        if name in read and name not in drawn and name not in NO_SETTING and name not in ELSEWHERE
+        if name in read and name not in {*drawn, *NO_SETTING, *ELSEWHERE, *UNFILLED}
     }
     assert not missing, missing

@@ -7,22 +7,26 @@ from typing import Any
 
 import bpy
 
-from .base import KomorebiPanel, cycles, draw_moved
-from .pass_toggles import toggles
+from .. import passes
+from .base import KomorebiPanel, cycles, draw_moved, owner_of
 
 
 class ViewLayerPanel(KomorebiPanel):
     bl_context = "view_layer"
 
 
-def draw_toggles(layout: Any, group: str, context: Any) -> None:
-    """The switches of passes of one `group` of the table."""
-    column, heading = layout, ""
-    for toggle, owner in toggles(group, context):
-        if toggle.heading != heading:
-            heading = toggle.heading
-            column = layout.column(heading=heading, align=True) if heading else layout
-        column.prop(owner, toggle.name, text=toggle.label)
+# Made by Blender itself, in releases that have it.
+GREASE_PENCIL = ("use_pass_grease_pencil", "Grease Pencil")
+
+
+def toggles(group: str, layer: Any) -> list[tuple[Any, str, str]]:
+    """The switches of passes of a `group` of the table: what holds it, property, label."""
+    if group == "CRYPTOMATTE":
+        return [(layer, name, label) for name, label, _ in passes.CRYPTOMATTES]
+    found = [(s.place(layer), s.prop, s.label) for s in passes.SWITCHES if s.group == group]
+    if group == "DATA" and owner_of(GREASE_PENCIL[0], layer) is not None:
+        found.append((layer, *GREASE_PENCIL))
+    return found
 
 
 class PassesPanel(ViewLayerPanel):
@@ -33,10 +37,12 @@ class PassesPanel(ViewLayerPanel):
 
     @classmethod
     def poll(cls, context: Any) -> bool:
-        return super().poll(context) and bool(toggles(cls.group, context))
+        return super().poll(context) and bool(toggles(cls.group, context.view_layer))
 
     def draw(self, context: Any) -> None:
-        draw_toggles(self.column(), self.group, context)
+        column = self.column()
+        for owner, name, label in toggles(self.group, context.view_layer):
+            column.prop(owner, name, text=label)
 
 
 class KOMOREBI_VIEWLAYER_PT_passes(ViewLayerPanel, bpy.types.Panel):
@@ -61,11 +67,19 @@ class KOMOREBI_VIEWLAYER_PT_passes_cryptomatte(PassesPanel, bpy.types.Panel):
     group = "CRYPTOMATTE"
 
     def draw(self, context: Any) -> None:
-        draw_toggles(self.column(), self.group, context)
+        layer = context.view_layer
+        shown = toggles(self.group, layer)
         column = self.column()
-        shown = toggles(self.group, context)
-        column.active = any(getattr(owner, toggle.name) for toggle, owner in shown)
-        column.prop(context.view_layer, "pass_cryptomatte_depth", text="Levels")
+        for owner, name, label in shown:
+            column.prop(owner, name, text=label)
+        column = self.column()
+        column.active = any(getattr(owner, name) for owner, name, _ in shown)
+        column.prop(layer, "pass_cryptomatte_depth", text="Levels")
+
+
+class KOMOREBI_VIEWLAYER_PT_passes_other(PassesPanel, bpy.types.Panel):
+    bl_label = "Other"
+    group = "OTHER"
 
 
 class KOMOREBI_VIEWLAYER_PT_passes_aov(ViewLayerPanel, bpy.types.Panel):
@@ -129,6 +143,7 @@ CLASSES = (
     KOMOREBI_VIEWLAYER_PT_passes_data,
     KOMOREBI_VIEWLAYER_PT_passes_light,
     KOMOREBI_VIEWLAYER_PT_passes_cryptomatte,
+    KOMOREBI_VIEWLAYER_PT_passes_other,
     KOMOREBI_VIEWLAYER_PT_passes_aov,
     KOMOREBI_VIEWLAYER_PT_filter,
     KOMOREBI_VIEWLAYER_PT_override,
