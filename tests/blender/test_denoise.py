@@ -124,7 +124,7 @@ def test_a_library_that_fails_is_an_error(folder):
 
 def test_panel_says_why_it_is_greyed(folder):
     """The header's checkbox can be used only with a library, or to switch it off."""
-    from komorebi import ui
+    from komorebi.ui import base, sampling
 
     class Layout:
         def __init__(self):
@@ -141,9 +141,9 @@ def test_panel_says_why_it_is_greyed(folder):
 
     class Panel:
         layout = Layout()
-        column = ui.KomorebiPanel.column
+        column = base.KomorebiPanel.column
 
-    panel = ui.KOMOREBI_RENDER_PT_sampling_render_denoise
+    panel = sampling.KOMOREBI_RENDER_PT_sampling_render_denoise
     with named(folder / "nothing"):
         here = Panel()
         panel.draw_header(here, bpy.context)

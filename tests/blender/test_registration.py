@@ -21,7 +21,10 @@ ITEMS = {
 
 INHERITED = (
     "DATA_PT_lens", "DATA_PT_camera", "RENDER_PT_format", "RENDER_PT_color_management",
-    "WORLD_PT_context_world", "VIEWLAYER_PT_layer", "OBJECT_PT_visibility",
+    "WORLD_PT_context_world", "VIEWLAYER_PT_layer", "DATA_PT_camera_dof",
+    "DATA_PT_camera_stereoscopy", "PARTICLE_PT_render", "PARTICLE_PT_hair_shape", "RENDER_PT_gpencil",
+    "RENDER_PT_freestyle", "VIEWLAYER_PT_freestyle", "MATERIAL_PT_freestyle_line",
+    "EEVEE_MATERIAL_PT_context_material", "RENDER_PT_post_processing",
 )  # fmt: skip
 
 
@@ -60,7 +63,7 @@ def test_blenders_panels_are_inherited():
     ours = {p.__name__ for p in panels() if "KOMOREBI" in getattr(p, "COMPAT_ENGINES", ())}
     for name in INHERITED:
         assert name in ours, name
-    for name in ("DATA_PT_camera_dof", "VIEWLAYER_PT_layer_passes", "RENDER_PT_freestyle"):
+    for name in ("OBJECT_PT_visibility", "VIEWLAYER_PT_layer_passes", "DATA_PT_preview"):
         assert name not in ours, name
 
 

@@ -53,14 +53,15 @@ bpy.app.timers.register(guarded, first_interval=1.0, persistent=True)
 
 
 @contextlib.contextmanager
-def screen():
-    """A display of its own; ends with the test."""
+def screen(size="960x540x24", frame_buffer=None):
+    """A display of its own; ends with the test. Its pixels are a file in `frame_buffer`, if given."""
     program = shutil.which("Xvfb")
     if program is None:
         raise support.Skip("Xvfb is not installed")
     reading, writing = os.pipe()
     server = subprocess.Popen(
-        [program, "-displayfd", str(writing), "-screen", "0", "960x540x24", "-nolisten", "tcp"],
+        [program, "-displayfd", str(writing), "-screen", "0", size, "-nolisten", "tcp",
+         *(["-fbdir", str(frame_buffer)] if frame_buffer else [])],
         pass_fds=(writing,), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     )  # fmt: skip
     os.close(writing)
@@ -72,14 +73,14 @@ def screen():
         server.wait()
 
 
-def watch(folder, samples):
+def run(text, folder):
+    """Runs Python text in a Blender with a window, with the add-on on; what it said."""
     if support.IS_MODULE:
         raise support.Skip("Blender as a Python module has no window")
-    picture = folder / "picture.exr"
     path = folder / "watch.py"
     path.write_text(
         f"import sys; sys.path.insert(0, {str(support.HERE)!r})\nimport support; support.enable()\n"
-        + WATCH.format(samples=samples, picture=str(picture))
+        + text
     )
     with screen() as display:
         done = support.process(
@@ -88,6 +89,12 @@ def watch(folder, samples):
             timeout=120, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1",
         )  # fmt: skip
     assert "DONE" in done.output, done
+    return done
+
+
+def watch(folder, samples):
+    picture = folder / "picture.exr"
+    done = run(WATCH.format(samples=samples, picture=str(picture)), folder)
     return done, support.read(picture)
 
 
@@ -97,3 +104,42 @@ def test_tiles_appear_while_the_frame_renders(folder):
     assert len(shown) >= 3, done
     assert shown[-1][0] == "(0, 0, 320, 240)", done
     assert (pixels[:, :, 3] == 1).all()
+
+
+# Render Single Layer is heeded where a user presses F12, not on the command line.
+SINGLE = """
+import bpy
+import komorebi.driver
+scene = bpy.context.scene
+support.small(scene)
+scene.view_layers.new("Second")
+original = komorebi.driver.export_scene
+def export_scene(*arguments, **options):
+    depsgraph = next(a for a in arguments if isinstance(a, bpy.types.Depsgraph))
+    print("LAYER", single, depsgraph.view_layer.name, flush=True)
+    return original(*arguments, **options)
+komorebi.driver.export_scene = export_scene
+single, started = False, 0
+def step():
+    global single, started
+    if bpy.app.is_job_running("RENDER"):
+        return 0.05
+    window = bpy.context.window_manager.windows[0]
+    if started == 2:
+        print("DONE", flush=True)
+        bpy.ops.wm.quit_blender()
+        return None
+    single = scene.render.use_single_layer = started == 1
+    window.view_layer = scene.view_layers["Second"]
+    started += 1
+    with bpy.context.temp_override(window=window):
+        bpy.ops.render.render("INVOKE_DEFAULT")
+    return 0.5
+bpy.app.timers.register(step, first_interval=1.0, persistent=True)
+"""
+
+
+def test_render_single_layer(folder):
+    done = run(SINGLE, folder)
+    layers = re.findall(r"LAYER (\w+) (\w+)", done.output)
+    assert layers == [("False", "ViewLayer"), ("False", "Second"), ("True", "Second")], done

@@ -1,5 +1,5 @@
 # mypy: disable-error-code="misc"
-"""Komorebi's own panels, where a Cycles user looks for them."""
+"""Render properties: samples, noise, and what is computed."""
 
 from __future__ import annotations
 
@@ -8,31 +8,8 @@ from typing import Any
 
 import bpy
 
-from . import panels
-from .denoise import library
-
-ENGINE_ID = "KOMOREBI"
-
-
-class KomorebiPanel:
-    """Placed among the render properties, and shown for this engine alone."""
-
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    bl_context = "render"
-    COMPAT_ENGINES = {ENGINE_ID}
-
-    layout: Any
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        return context.engine in cls.COMPAT_ENGINES
-
-    def column(self) -> Any:
-        """A column in Blender's own style: labels on the left, values on the right."""
-        self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
-        return self.layout.column()
+from ..denoise import library
+from .base import ENGINE_ID, KomorebiPanel
 
 
 class KOMOREBI_RENDER_PT_sampling(KomorebiPanel, bpy.types.Panel):
@@ -82,7 +59,8 @@ class KOMOREBI_RENDER_PT_sampling_render_denoise(KomorebiPanel, bpy.types.Panel)
         found = library.find()
         column = self.column()
         column.active = context.scene.komorebi.use_denoising
-        for line in textwrap.wrap(found.missing or f"Open Image Denoise: {found.path}", 60):
+        text = found.missing or f"Open Image Denoise: {found.path}"
+        for line in textwrap.wrap(text, 60, break_on_hyphens=False):
             column.label(text=line)
 
 
@@ -128,63 +106,6 @@ class KOMOREBI_RENDER_PT_surface(KomorebiPanel, bpy.types.Panel):
         self.column().prop(context.scene.komorebi, "clay_color", text="Color")
 
 
-class KOMOREBI_RENDER_PT_film(KomorebiPanel, bpy.types.Panel):
-    bl_label = "Film"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Any) -> None:
-        self.column().prop(context.scene.render, "film_transparent", text="Transparent")
-
-
-class KOMOREBI_RENDER_PT_film_pixel_filter(KomorebiPanel, bpy.types.Panel):
-    bl_label = "Pixel Filter"
-    bl_parent_id = "KOMOREBI_RENDER_PT_film"
-
-    def draw(self, context: Any) -> None:
-        settings = context.scene.komorebi
-        column = self.column()
-        column.prop(settings, "pixel_filter", text="Type")
-        if settings.pixel_filter != "BOX":
-            column.prop(settings, "filter_width")
-
-
-class KOMOREBI_RENDER_PT_performance(KomorebiPanel, bpy.types.Panel):
-    bl_label = "Performance"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Any) -> None:
-        render = context.scene.render
-        column = self.column()
-        column.prop(render, "threads_mode")
-        sub = column.column()
-        sub.enabled = render.threads_mode == "FIXED"
-        sub.prop(render, "threads")
-        column.prop(render, "use_persistent_data", text="Persistent Data")
-
-
-class KOMOREBI_VIEWLAYER_PT_passes(KomorebiPanel, bpy.types.Panel):
-    bl_label = "Passes"
-    bl_context = "view_layer"
-
-    def draw(self, context: Any) -> None:
-        column = self.column().column(heading="Include")
-        column.prop(context.view_layer, "use_pass_z", text="Depth")
-        column.prop(context.view_layer, "use_pass_normal", text="Normal")
-        column.prop(context.view_layer.komorebi, "pass_debug_sample_count", text="Sample Count")
-
-
-class KOMOREBI_WORLD_PT_surface(KomorebiPanel, bpy.types.Panel):
-    bl_label = "Surface"
-    bl_context = "world"
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        return super().poll(context) and context.world is not None
-
-    def draw(self, context: Any) -> None:
-        panels.draw_world_surface(self.layout, context.world)
-
-
 def draw_method(self: Any, context: Any) -> None:
     """Below the list of render engines, as Cycles draws its device."""
     if context.engine == ENGINE_ID:
@@ -200,23 +121,4 @@ CLASSES = (
     KOMOREBI_RENDER_PT_sampling_advanced,
     KOMOREBI_RENDER_PT_ambient_occlusion,
     KOMOREBI_RENDER_PT_surface,
-    KOMOREBI_RENDER_PT_film,
-    KOMOREBI_RENDER_PT_film_pixel_filter,
-    KOMOREBI_RENDER_PT_performance,
-    KOMOREBI_VIEWLAYER_PT_passes,
-    KOMOREBI_WORLD_PT_surface,
 )
-
-
-def register() -> None:
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
-    bpy.types.RENDER_PT_context.append(draw_method)
-    panels.inherit(ENGINE_ID)
-
-
-def unregister() -> None:
-    panels.disinherit(ENGINE_ID)
-    bpy.types.RENDER_PT_context.remove(draw_method)
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)

@@ -1,0 +1,31 @@
+"""What Blender's editors show while Komorebi is chosen: a file for each tab of the properties.
+
+docs/panels.md tells for each of Cycles' panels what stands in its place.
+"""
+
+from __future__ import annotations
+
+import bpy
+
+from . import adopted, camera, light, material, menus, object, render, sampling, view_layer, world
+from .base import ENGINE_ID
+
+CLASSES = tuple(
+    cls
+    for module in (sampling, render, view_layer, camera, light, object, world, material)
+    for cls in module.CLASSES
+)
+
+
+def register() -> None:
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    menus.register()
+    adopted.register(ENGINE_ID)
+
+
+def unregister() -> None:
+    adopted.unregister(ENGINE_ID)
+    menus.unregister()
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)
