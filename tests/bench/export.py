@@ -17,7 +17,7 @@ from bench.scenes import PYTHON
 from bench.tables import Table, figure
 
 SCRIPT = Path(__file__).resolve().parent / "export_bench.py"
-CASES = ("first", "unchanged", "moved", "changed")
+CASES = ("first", "unchanged", "moved", "changed", "kept")
 
 
 def hosts() -> list[list[str]]:

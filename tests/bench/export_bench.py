@@ -5,9 +5,10 @@
 
 The add-on and its module are found as in the tests: in the folder BLENDER_USER_SCRIPTS. Each mesh
 is a wavy grid of FACES (1,000,000) triangles or quads, flat or smooth, rendered REPEATS (3) times:
-`first` (nothing is known of it, the mesh's data are new), `unchanged`, `moved` (another matrix) and
-`changed` (one vertex moved, so Blender's normals are computed again and the tree is built anew).
-The picture has 8 × 8 pixels, of which nothing is measured. Without Persistent Data, so each render
+`first` (nothing is known of it, the mesh's data are new), `unchanged`, `moved` (another matrix),
+`changed` (one vertex moved, so Blender's normals are computed again and the tree is built anew) and
+`kept` (moved, with Persistent Data).
+The picture has 8 × 8 pixels, of which nothing is measured. Without Persistent Data each render
 gets a depsgraph of its own; what Blender does to evaluate it is not in the figures, normals are.
 """
 
@@ -101,6 +102,12 @@ def measure(kind: str, smooth: bool, faces: int, repeats: int, watch: Stopwatch)
         mesh.vertices[0].co.z = repeat + 1
         mesh.update()
         render("changed")
+        scene.render.use_persistent_data = True
+        bpy.ops.render.render(scene=scene.name)
+        for turn in range(3):
+            obj.rotation_euler.z = turn
+            render("kept")
+        scene.render.use_persistent_data = False
     rows = []
     for case, runs in cases.items():
         totals = [sum(run.values()) for run in runs]
