@@ -76,8 +76,9 @@ def build(
             strength=world.strength, texture_from_world=world.texture_from_world,
         )  # fmt: skip
     scene.set_camera(
-        camera.kind, camera.clip_from_world, camera.clip_start, camera.clip_end,
+        camera.kind, camera.matrix, camera.clip_start, camera.clip_end,
         camera.width, camera.height,
+        lens=camera.lens, panorama=camera.panorama, stereo=camera.stereo,
     )  # fmt: skip
     scene.commit(threads=threads, cancel=cancel)
     return scene

@@ -21,6 +21,11 @@ void start_rays_scalar(const RenderContext& context, const CameraBlock& block) {
 }  // namespace
 
 void start_rays(const RenderContext& context, const CameraBlock& block) {
+  // Panoramas and spherical stereo take turns: they cost little beside tracing, and many lines.
+  const CameraView& camera = context.camera;
+  if (camera.kind == CameraKind::kPanorama || camera.stereo.eye != 0.0) {
+    return start_rays_scalar(context, block);
+  }
   const int kernel = active_kernel_index();
   if (kernel >= 0) return kSimdCameraKernels[kernel]->start_rays(context, block);
   start_rays_scalar(context, block);

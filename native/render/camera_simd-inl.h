@@ -33,12 +33,57 @@ HWY_INLINE Float sample_filter_lanes(const FilterView& filter, Float u) {
   return hn::IfThenElse(hn::Lt(s, f32(0.0f)), hn::Neg(x), x);
 }
 
+struct PointLanes {
+  Float x, y;
+};
+
+/// aperture_point (core/lens.h).
+HWY_INLINE PointLanes aperture_point_lanes(const ApertureView& aperture, Float ux, Float uy) {
+  if (aperture.blades == 0) {
+    const Vec3Lanes lifted = cosine_hemisphere_disk_lanes(ux, uy);
+    return {lifted.x, lifted.y};
+  }
+  const float blades = static_cast<float>(aperture.blades);
+  const Float count = f32(blades), last = f32(blades - 1.0f);
+  const Float place = ux * count;
+  Float side = hn::ConvertTo(TagF(), hn::ConvertTo(TagI(), place));
+  side = hn::IfThenElse(hn::Gt(side, last), last, side);
+  const Float r = hn::Sqrt(place - side);
+  const Float x = r * f32(aperture.cos_half);
+  const Float y = r * ((f32(2.0f) * uy - f32(1.0f)) * f32(aperture.sin_half));
+  const SinCosLanes turn = sin_cos_turns_lanes(f32(aperture.rotation) + side / count);
+  return {turn.cos * x - turn.sin * y, turn.sin * x + turn.cos * y};
+}
+
 HWY_INLINE Vec3dLanes spread(const double* v) {
   return {f64(v[0]), f64(v[1]), f64(v[2])};
 }
 
 HWY_INLINE void store(Float v, float* to) {
   hn::StoreU(v, TagF(), to);
+}
+
+HWY_INLINE Double length_of(const Vec3dLanes& v) {
+  return hn::Sqrt(dot(v, v));
+}
+
+/// detail::lens_ray (core/camera.h) without stereo: moves `eye` to the lens and on to the near
+/// clip, and bends `along`, which becomes a unit vector.
+HWY_INLINE void bend(const CameraView& camera, const PairSampler& lens, Uint sample,
+                     Vec3dLanes& eye, Vec3dLanes& along) {
+  Uint u, v;
+  lens.bits(sample, u, v);
+  const PointLanes p =
+      aperture_point_lanes(camera.aperture, to_unit_float_lanes(u), to_unit_float_lanes(v));
+  const Vec3dLanes on_lens = sum(scaled(to_double(p.x), spread(&camera.lens_x.x)),
+                                 scaled(to_double(p.y), spread(&camera.lens_y.x)));
+  const Double length = length_of(along);
+  const Vec3dLanes bent = difference(along, scaled(f64(camera.inverse_focus), on_lens));
+  const Double bent_length = length_of(bent);
+  along = {bent.x / bent_length, bent.y / bent_length, bent.z / bent_length};
+  const bool orthographic = camera.kind == CameraKind::kOrthographic;
+  const Double reach = f64(camera.clip_start) * (orthographic ? bent_length : length);
+  eye = sum(sum(eye, on_lens), scaled(reach, along));
 }
 
 void start_rays(const RenderContext& context, const CameraBlock& block) {
@@ -64,16 +109,21 @@ void start_rays(const RenderContext& context, const CameraBlock& block) {
     const Double x = to_double(film_x) - f64(camera.film_center_x);
     const Double y = to_double(film_y) - f64(camera.film_center_y);
     const Vec3dLanes shift = sum(scaled(x, per_x), scaled(y, per_y));
-    const Vec3dLanes eye = orthographic ? sum(origin, shift) : origin;
-    const Vec3dLanes along = orthographic ? direction : sum(direction, shift);
-    const Double length = hn::Sqrt((along.x * along.x + along.y * along.y) + along.z * along.z);
-    const Vec3dLanes start = sum(eye, scaled(f64(camera.clip_start), along));
-    store(to_float(start.x), block.origin[0] + i);
-    store(to_float(start.y), block.origin[1] + i);
-    store(to_float(start.z), block.origin[2] + i);
-    store(to_float(along.x / length), block.direction[0] + i);
-    store(to_float(along.y / length), block.direction[1] + i);
-    store(to_float(along.z / length), block.direction[2] + i);
+    Vec3dLanes eye = orthographic ? sum(origin, shift) : origin;
+    Vec3dLanes along = orthographic ? direction : sum(direction, shift);
+    const Double length = length_of(along);
+    if (camera.has_lens) {
+      bend(camera, PairSampler(seed, dimension_hash(kDimensionLens)), sample, eye, along);
+    } else {
+      eye = sum(eye, scaled(f64(camera.clip_start), along));
+      along = {along.x / length, along.y / length, along.z / length};
+    }
+    store(to_float(eye.x), block.origin[0] + i);
+    store(to_float(eye.y), block.origin[1] + i);
+    store(to_float(eye.z), block.origin[2] + i);
+    store(to_float(along.x), block.direction[0] + i);
+    store(to_float(along.y), block.direction[1] + i);
+    store(to_float(along.z), block.direction[2] + i);
     store(to_float(f64(camera.clip_end - camera.clip_start) * length), block.t_max + i);
     store(to_unit_float_lanes(time), block.time + i);
   }

@@ -320,5 +320,5 @@ def test_stereo_renders_both_eyes(folder):
     ):
         bpy.ops.render.render()
     assert len(scenes) == 1, "the scene is exported once, whatever the number of eyes"
-    left, right = (view.camera.clip_from_world for view in frames[0][1].views)
+    left, right = (view.camera.matrix for view in frames[0][1].views)
     assert not np.allclose(left, right)

@@ -31,8 +31,12 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
     scene = bpy.context.scene
     if job["frame"] is not None:
         scene.frame_set(job["frame"])
+    if job["camera"] is not None:
+        camera.look_through(scene, job["camera"])
     notes = render_settings.set_size(scene, job["longest"])
     render_settings.set_output(scene)
+    if job["eye"] is not None:
+        camera.one_eye(scene, job["eye"])
     layer, more = render_settings.choose_view_layer(scene, job["view_layer"])
     notes += more + objects.lamps_off() + objects.objects_off()
     layer.material_override = engines.clay(job["mode"], job["flat"])
@@ -43,7 +47,7 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
     depsgraph = layer.depsgraph
     depsgraph.update()
     notes += camera.ensure_camera(scene, depsgraph)
-    notes += objects.still_camera(scene.camera) + objects.unsupported_instances(depsgraph)
+    notes += camera.supported_camera(scene.camera) + objects.unsupported_instances(depsgraph)
     samples = job["samples"]
     if any(thing.is_shadow_catcher for thing in scene.objects):
         samples *= CATCHER_SAMPLES
