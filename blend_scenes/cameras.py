@@ -43,6 +43,7 @@ def depth_of_field() -> None:
     surroundings()
     disk = add_camera((0.5, -4.5, 1.6), (0.9, 0.0, 0.9), lens=35.0)
     disk.name, disk.data.clip_start = "Disk", 0.01
+    disk.data.stereo.interocular_distance, disk.data.stereo.convergence_distance = 0.5, 3.4
     dof = disk.data.dof
     dof.use_dof, dof.aperture_fstop, dof.focus_distance = True, 0.12, 3.4
     blades = another_camera("Blades", disk)
@@ -65,6 +66,9 @@ def panorama() -> None:
     first.data.type, first.data.clip_start = "PANO", 0.05
     bpy.context.view_layer.update()
     first.name = "Equisolid"
+    stereo = first.data.stereo
+    stereo.interocular_distance, stereo.convergence_distance = 0.6, 3.0
+    stereo.convergence_mode, stereo.use_pole_merge = "TOE", True
     equisolid = first.data.cycles
     equisolid.panorama_type, equisolid.fisheye_lens = "FISHEYE_EQUISOLID", 9.0
     equisolid.fisheye_fov = math.radians(170.0)
@@ -83,6 +87,7 @@ def panorama() -> None:
     settings.longitude_min, settings.longitude_max = -1.0, 2.5
     settings.latitude_min, settings.latitude_max = -0.4, 1.5
     part.data.shift_x, part.data.shift_y = 0.1, -0.05
+    part.data.stereo.convergence_mode = "PARALLEL"
     ball = another_camera("Mirror ball", first)
     ball.data.cycles.panorama_type = "MIRRORBALL"
     face = another_camera("Cube face", first)

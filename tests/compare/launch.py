@@ -36,7 +36,7 @@ class Job:
     world_image: str | None = None
     frame: int | None = None
     camera: str | None = None
-    eye: str | None = None
+    stereo: str | None = None
 
 
 @dataclass(frozen=True)

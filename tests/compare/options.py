@@ -41,7 +41,9 @@ def parser() -> argparse.ArgumentParser:
     )
     made.add_argument("--camera", help="the camera object to look through (default: the scene's)")
     made.add_argument(
-        "--eye", choices=("left", "right"), help="render this eye of Stereo 3D (default: no stereo)"
+        "--stereo",
+        choices=("plain", "spherical"),
+        help="render both eyes of Stereo 3D side by side, with or without spherical stereo",
     )
     made.add_argument("--flat", action="store_true", help="shade Cycles with the geometric normal")
     made.add_argument(
@@ -104,7 +106,7 @@ def jobs(options: argparse.Namespace, scene: Path, mode: str) -> tuple[Job, Job]
         else None,
         frame=options.frame,
         camera=options.camera,
-        eye=options.eye,
+        stereo=options.stereo,
     )
     seeds = [seed + SECOND_SEED for seed in first.seeds]
     return first, Job(**{**vars(first), "engine": options.second, "seeds": seeds})

@@ -63,12 +63,19 @@ def look_through(scene: Any, name: str) -> None:
     settle(scene, "camera", scene.objects[name])
 
 
-def one_eye(scene: Any, eye: str) -> None:
-    """Stereo 3D of which one eye alone is rendered, into the file that is asked for."""
+def both_eyes(scene: Any, spherical: bool) -> None:
+    """Stereo 3D, the eyes side by side in one picture."""
     require(scene.render, use_multiview=True, views_format="STEREO_3D")
     for view in scene.render.views:
-        view.use, view.file_suffix = view.name == eye, ""
-    settle(scene.render.image_settings, "views_format", "INDIVIDUAL")
+        view.use = True
+    require(scene.render.image_settings, views_format="STEREO_3D")
+    require(
+        scene.render.image_settings.stereo_3d_format,
+        display_mode="SIDEBYSIDE",
+        use_squeezed_frame=False,
+        use_sidebyside_crosseyed=False,
+    )
+    require(scene.camera.data.stereo, use_spherical_stereo=spherical)
 
 
 def supported_camera(camera: Any) -> list[str]:

@@ -35,8 +35,6 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
         camera.look_through(scene, job["camera"])
     notes = render_settings.set_size(scene, job["longest"])
     render_settings.set_output(scene)
-    if job["eye"] is not None:
-        camera.one_eye(scene, job["eye"])
     layer, more = render_settings.choose_view_layer(scene, job["view_layer"])
     notes += more + objects.lamps_off() + objects.objects_off()
     layer.material_override = engines.clay(job["mode"], job["flat"])
@@ -52,6 +50,8 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
     if any(thing.is_shadow_catcher for thing in scene.objects):
         samples *= CATCHER_SAMPLES
         notes.append(f"shadow catchers: {CATCHER_SAMPLES} times the samples")
+    if job["stereo"] is not None:
+        camera.both_eyes(scene, job["stereo"] == "spherical")
     if job["engine"] == "CYCLES":
         engines.set_cycles(scene, samples)
     else:
