@@ -127,6 +127,7 @@ class CameraData:
     (native/render/camera_fields.h); None: a pinhole, no panorama, no eye that turns.
     """
 
+    name: str
     kind: str  # PERSPECTIVE, ORTHOGRAPHIC, PANORAMA
     matrix: DoubleArray  # [4, 4]
     clip_start: float  # metres along the view axis, of a panorama along the ray

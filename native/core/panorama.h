@@ -45,7 +45,7 @@ inline Vec3d fisheye_direction(double a, double b, double radius, double sin, do
 inline Vec3d mirror_ball_direction(double a, double b) {
   const double square = 1.0 - a * a - b * b;
   if (!(square >= 0.0)) return Vec3d(0.0);
-  // The ball's normal is (a, b, −√square); seen along +Z the reflection is 2 (n·v) n − v.
+  // The ball's normal n is (a, b, −√square); what comes along v = +Z goes on along v − 2 (n·v) n.
   const double h = 2.0 * std::sqrt(square);
   return Vec3d(h * a, h * b, 1.0 - 2.0 * square);
 }

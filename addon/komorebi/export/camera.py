@@ -90,11 +90,11 @@ def export_camera(engine: Any, depsgraph: Any, view: str) -> CameraData:
     camera = camera_object(engine, depsgraph)
     lens = read_lens(camera)
     stereo = None
-    world_from_object = np.array(camera.matrix_world, np.float64)
+    world_from_object = np.array(camera.matrix_world, np.float64, order="C")
     if view:
         spherical = engine.use_spherical_stereo(camera)
         matrix = engine.camera_model_matrix(camera, use_spherical_stereo=spherical)
-        world_from_object = np.array(matrix, np.float64).reshape(4, 4)
+        world_from_object = np.array(matrix, np.float64, order="C").reshape(4, 4)
         lens.shift_x = engine.camera_shift_x(camera, use_spherical_stereo=spherical)
         stereo = stereo_numbers(camera, view) if spherical else None
     view_matrix = camera_from_world(world_from_object)
@@ -102,7 +102,7 @@ def export_camera(engine: Any, depsgraph: Any, view: str) -> CameraData:
     width, height = engine.resolution_x, engine.resolution_y
     aspect = (render.pixel_aspect_x, render.pixel_aspect_y)
     data = CameraData(
-        kind=KINDS[lens.kind], matrix=view_matrix, width=width, height=height,
+        name=name_of(camera), kind=KINDS[lens.kind], matrix=view_matrix, width=width, height=height,
         clip_start=lens.clip_start, clip_end=lens.clip_end,
         lens=lens_numbers(camera, depsgraph, world_from_object), stereo=stereo,
     )  # fmt: skip
