@@ -86,34 +86,45 @@ HWY_INLINE void bend(const CameraView& camera, const PairSampler& lens, Uint sam
   eye = sum(sum(eye, on_lens), scaled(reach, along));
 }
 
-void start_rays(const RenderContext& context, const CameraBlock& block) {
-  const TagU du;
-  const CameraView& camera = context.camera;
-  const Vec3dLanes origin = spread(&camera.origin.x), direction = spread(&camera.direction.x);
-  const Vec3dLanes per_x = spread(&camera.per_x.x), per_y = spread(&camera.per_y.x);
-  const bool orthographic = camera.kind == CameraKind::kOrthographic;
-  for (std::size_t i = 0; i < block.count; i += hn::Lanes(du)) {
-    const Uint seed = hn::LoadU(du, block.pixel_seed + i);
-    const Uint sample = hn::LoadU(du, block.sample + i);
+/// Where samples [i, i + lanes) of a block lie on the film; writes their times.
+struct FilmPoints {
+  HWY_INLINE FilmPoints(const RenderContext& context, const CameraBlock& block, std::size_t i)
+      : seed(hn::LoadU(TagU(), block.pixel_seed + i)),
+        sample(hn::LoadU(TagU(), block.sample + i)) {
     const PairSampler pixel(seed, dimension_hash(kDimensionPixel));
     const PairSampler shutter(seed, dimension_hash(kDimensionTime));
     Uint u, v, time, unused;
     pixel.bits(sample, u, v);
     shutter.bits(sample, time, unused);
-
     const Float half = f32(0.5f);
-    const Float film_x = (to_float(hn::LoadU(du, block.x + i)) + half) +
-                         sample_filter_lanes(context.filter, to_unit_float_lanes(u));
-    const Float film_y = (to_float(hn::LoadU(du, block.y + i)) + half) +
-                         sample_filter_lanes(context.filter, to_unit_float_lanes(v));
-    const Double x = to_double(film_x) - f64(camera.film_center_x);
-    const Double y = to_double(film_y) - f64(camera.film_center_y);
+    x = (to_float(hn::LoadU(TagU(), block.x + i)) + half) +
+        sample_filter_lanes(context.filter, to_unit_float_lanes(u));
+    y = (to_float(hn::LoadU(TagU(), block.y + i)) + half) +
+        sample_filter_lanes(context.filter, to_unit_float_lanes(v));
+    store(to_unit_float_lanes(time), block.time + i);
+  }
+  HWY_INLINE PairSampler lens() const {
+    return PairSampler(seed, dimension_hash(kDimensionLens));
+  }
+  Uint seed, sample;
+  Float x, y;
+};
+
+void start_rays(const RenderContext& context, const CameraBlock& block) {
+  const CameraView& camera = context.camera;
+  const Vec3dLanes origin = spread(&camera.origin.x), direction = spread(&camera.direction.x);
+  const Vec3dLanes per_x = spread(&camera.per_x.x), per_y = spread(&camera.per_y.x);
+  const bool orthographic = camera.kind == CameraKind::kOrthographic;
+  for (std::size_t i = 0; i < block.count; i += hn::Lanes(TagU())) {
+    const FilmPoints film(context, block, i);
+    const Double x = to_double(film.x) - f64(camera.film_center_x);
+    const Double y = to_double(film.y) - f64(camera.film_center_y);
     const Vec3dLanes shift = sum(scaled(x, per_x), scaled(y, per_y));
     Vec3dLanes eye = orthographic ? sum(origin, shift) : origin;
     Vec3dLanes along = orthographic ? direction : sum(direction, shift);
     const Double length = length_of(along);
     if (camera.has_lens) {
-      bend(camera, PairSampler(seed, dimension_hash(kDimensionLens)), sample, eye, along);
+      bend(camera, film.lens(), film.sample, eye, along);
     } else {
       eye = sum(eye, scaled(f64(camera.clip_start), along));
       along = {along.x / length, along.y / length, along.z / length};
@@ -125,14 +136,25 @@ void start_rays(const RenderContext& context, const CameraBlock& block) {
     store(to_float(along.y), block.direction[1] + i);
     store(to_float(along.z), block.direction[2] + i);
     store(to_float(f64(camera.clip_end - camera.clip_start) * length), block.t_max + i);
-    store(to_unit_float_lanes(time), block.time + i);
+  }
+}
+
+void draw_points(const RenderContext& context, const CameraBlock& block) {
+  for (std::size_t i = 0; i < block.count; i += hn::Lanes(TagU())) {
+    const FilmPoints film(context, block, i);
+    store(film.x, block.origin[0] + i);
+    store(film.y, block.origin[1] + i);
+    Uint u, v;
+    film.lens().bits(film.sample, u, v);
+    store(to_unit_float_lanes(u), block.direction[0] + i);
+    store(to_unit_float_lanes(v), block.direction[1] + i);
   }
 }
 
 }  // namespace
 
 extern const CameraKernel kCameraKernel;
-constexpr CameraKernel kCameraKernel = {&start_rays};
+constexpr CameraKernel kCameraKernel = {&start_rays, &draw_points};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace komorebi

@@ -211,7 +211,7 @@ TEST(SphericalStereo, EyesStandAsideAndMeet) {
       ASSERT_NEAR(glm::length(offset), 0.04 * fade, 1e-12);
       ASSERT_NEAR(glm::dot(offset, from.direction), 0.0, 1e-12);
       ASSERT_NEAR(glm::dot(offset, rotation[1]), 0.0, 1e-12);
-      ASSERT_GE(glm::dot(glm::cross(from.direction, rotation[1]), offset), 0.0);
+      ASSERT_GE(glm::dot(glm::cross(from.direction, rotation[1]), offset), -1e-15);
       const Vec3d meeting = kLocation + 2.5 * from.direction;
       const Vec3d expected =
           convergence > 0.0 ? glm::normalize(meeting - kLocation - offset) : from.direction;
