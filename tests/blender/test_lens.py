@@ -260,6 +260,20 @@ def test_views_reach_the_file(folder):
     assert np.array_equal(both, np.concatenate([left, right], axis=1))
 
 
+def test_views_in_a_layered_file(folder):
+    scene = bpy.context.scene
+    scene.render.use_multiview = True
+    image = scene.render.image_settings
+    if "media_type" in image.bl_rna.properties:  # from 5.0 on
+        image.media_type = "MULTI_LAYER_IMAGE"
+    image.file_format, image.views_format = "OPEN_EXR_MULTILAYER", "MULTIVIEW"
+    scene.render.filepath = str(folder / "eyes.exr")
+    bpy.ops.render.render(write_still=True)
+    bytes_of = next(folder.glob("eyes*")).read_bytes()
+    for side in (b"left", b"right"):
+        assert b"ViewLayer.Combined." + side + b".R" in bytes_of, side
+
+
 def compat_media(image):
     if "media_type" in image.bl_rna.properties:  # from 5.0 on
         image.media_type = "IMAGE"

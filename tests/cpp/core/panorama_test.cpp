@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <random>
 #include <string>
 
@@ -219,6 +220,29 @@ TEST(SphericalStereo, EyesStandAsideAndMeet) {
     });
     EXPECT_GT(std::min({apart, between, united}), 20);
   }
+}
+
+// A perspective camera's eyes turn about the world's vertical.
+TEST(SphericalStereo, OfAPerspectiveCameraIsLevel) {
+  CameraDesc desc = camera_desc(PanoramaKind::kEquirectangular);
+  desc.kind = CameraKind::kPerspective;
+  desc.clip_from_world =
+      glm::perspective(1.0, 1.6, 0.25, 90.0) * glm::inverse(testing::pose(kEuler, kLocation));
+  const CameraView middle = make_camera(desc, Vec3d(0.0));
+  desc.stereo = {-0.05, 3.0, 0.0, 0.0};
+  const CameraView left = make_camera(desc, Vec3d(0.0));
+  for_film_points([&](const Vec2& film) {
+    const double x = double{film.x} - 160.0, y = double{film.y} - 100.0;
+    const CameraRay from = film_ray(middle, x, y, {}), ray = film_ray(left, x, y, {});
+    const double start = glm::length(from.origin - kLocation);
+    const Vec3d offset = ray.origin - start * ray.direction - kLocation;
+    ASSERT_NEAR(glm::length(offset), 0.05, 1e-12);
+    ASSERT_NEAR(offset.z, 0.0, 1e-12);
+    ASSERT_LT(glm::dot(offset, glm::cross(from.direction, Vec3d(0.0, 0.0, 1.0))), 0.0);
+    const Vec3d meeting = kLocation + 3.0 * from.direction;
+    ASSERT_LT(glm::length(glm::cross(meeting - kLocation - offset, ray.direction)), 1e-12);
+    ASSERT_DOUBLE_EQ(ray.t_max, from.t_max);
+  });
 }
 
 TEST(Panorama, RefusesWhatIsNoProjection) {
