@@ -75,6 +75,7 @@ TEST(CameraPicture, BatchesAgreeWithOneRayAfterAnother) {
     for (std::uint32_t y = 0; y < kSize; ++y) {
       for (std::uint32_t x = 0; x < kSize; ++x) pixels.push_back({x, y});
     }
+    std::vector<float> row(context.passes.size());
     std::vector<Vec3> radiance(5 * pixels.size());
     for (const std::string& name : built_instruction_sets()) {
       force_instruction_set(name);
@@ -82,7 +83,8 @@ TEST(CameraPicture, BatchesAgreeWithOneRayAfterAnother) {
       ASSERT_TRUE(integrator.sample(pixels, 5, radiance.data(), Cancel()));
       for (std::size_t p = 0; p < pixels.size(); ++p) {
         for (std::uint32_t i = 0; i < 5; ++i) {
-          const PixelSample one = render_sample(context, pixels[p].x, pixels[p].y, i);
+          const PixelSample one =
+              render_sample(context, pixels[p].x, pixels[p].y, i, row.data());
           ASSERT_EQ(radiance[5 * p + i], one.radiance) << name << ' ' << p << ' ' << i;
         }
       }
