@@ -99,4 +99,6 @@ def panorama() -> None:
     set_world()
 
 
-SCENES: dict[str, Callable[[], None]] = {scene.__name__: scene for scene in (depth_of_field, panorama)}
+SCENES: dict[str, Callable[[], None]] = {
+    scene.__name__: scene for scene in (depth_of_field, panorama)
+}

@@ -32,8 +32,8 @@ struct CameraView {
   Vec3d lens_x{0.0}, lens_y{0.0};  ///< metres that a unit of the aperture's x and y stands for
   double inverse_focus = 0.0;      ///< 1 / depth (panorama: distance) of what is sharp
 
-  PanoramaView panorama;          ///< of a panorama, as is the next
-  Mat3d world_from_camera{1.0};   ///< its axes: right, up, back
+  PanoramaView panorama;         ///< of a panorama, as is the next
+  Mat3d world_from_camera{1.0};  ///< its axes: right, up, back
   SphericalStereoView stereo;
 };
 

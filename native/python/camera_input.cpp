@@ -48,8 +48,8 @@ CameraDesc camera_input(const std::string& kind, const py::object& matrix, const
   } else if (kind == "PANORAMA") {
     camera.kind = CameraKind::kPanorama;
   } else if (kind != "PERSPECTIVE") {
-    throw std::invalid_argument(
-        "camera kind must be PERSPECTIVE, ORTHOGRAPHIC or PANORAMA, not " + kind);
+    throw std::invalid_argument("camera kind must be PERSPECTIVE, ORTHOGRAPHIC or PANORAMA, not " +
+                                kind);
   }
   if (panorama.is_none() == (camera.kind == CameraKind::kPanorama)) {
     throw std::invalid_argument("a camera of kind PANORAMA, and no other, needs a panorama");

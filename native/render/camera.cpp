@@ -38,8 +38,8 @@ void check(const CameraDesc& desc) {
   const Mat4d& matrix = panorama ? desc.world_from_camera : desc.clip_from_world;
   for (int c = 0; c < 4; ++c) {
     for (int r = 0; r < 4; ++r) {
-      require(std::isfinite(matrix[c][r]), panorama ? "the matrix is not finite"
-                                                    : "the projection matrix is not finite");
+      require(std::isfinite(matrix[c][r]),
+              panorama ? "the matrix is not finite" : "the projection matrix is not finite");
     }
   }
   require(desc.width != 0 && desc.height != 0, "the picture has no pixels");
@@ -85,8 +85,8 @@ void set_stereo(CameraView& view, const StereoDesc& stereo) {
   require(std::isfinite(stereo.pole_merge_angle_from) && std::isfinite(stereo.pole_merge_angle_to),
           "the angles of the pole merge are not finite");
   // A mirror ball shows left and right exchanged, and Cycles exchanges the eyes with them.
-  const bool mirrored = view.kind == CameraKind::kPanorama &&
-                        view.panorama.kind == PanoramaKind::kMirrorBall;
+  const bool mirrored =
+      view.kind == CameraKind::kPanorama && view.panorama.kind == PanoramaKind::kMirrorBall;
   view.stereo.eye = mirrored ? -stereo.eye : stereo.eye;
   if (stereo.convergence_distance > 0.0) {
     view.stereo.inverse_convergence = 1.0 / stereo.convergence_distance;

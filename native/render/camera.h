@@ -7,10 +7,10 @@ namespace komorebi {
 
 /// A thin lens.
 struct LensDesc {
-  double radius = 0.0;         ///< of the opening, metres; 0: a pinhole
-  std::uint32_t blades = 0;    ///< of its polygon; fewer than 3: a disk
-  double rotation = 0.0;       ///< radians, counter-clockwise as seen from behind
-  double ratio = 1.0;          ///< how many times higher than wide the opening is
+  double radius = 0.0;          ///< of the opening, metres; 0: a pinhole
+  std::uint32_t blades = 0;     ///< of its polygon; fewer than 3: a disk
+  double rotation = 0.0;        ///< radians, counter-clockwise as seen from behind
+  double ratio = 1.0;           ///< how many times higher than wide the opening is
   double focus_distance = 1.0;  ///< metres along the axis; panorama: along the ray
 };
 

@@ -89,8 +89,7 @@ HWY_INLINE void bend(const CameraView& camera, const PairSampler& lens, Uint sam
 /// Where samples [i, i + lanes) of a block lie on the film; writes their times.
 struct FilmPoints {
   HWY_INLINE FilmPoints(const RenderContext& context, const CameraBlock& block, std::size_t i)
-      : seed(hn::LoadU(TagU(), block.pixel_seed + i)),
-        sample(hn::LoadU(TagU(), block.sample + i)) {
+      : seed(hn::LoadU(TagU(), block.pixel_seed + i)), sample(hn::LoadU(TagU(), block.sample + i)) {
     const PairSampler pixel(seed, dimension_hash(kDimensionPixel));
     const PairSampler shutter(seed, dimension_hash(kDimensionTime));
     Uint u, v, time, unused;
@@ -103,9 +102,7 @@ struct FilmPoints {
         sample_filter_lanes(context.filter, to_unit_float_lanes(v));
     store(to_unit_float_lanes(time), block.time + i);
   }
-  HWY_INLINE PairSampler lens() const {
-    return PairSampler(seed, dimension_hash(kDimensionLens));
-  }
+  HWY_INLINE PairSampler lens() const { return PairSampler(seed, dimension_hash(kDimensionLens)); }
   Uint seed, sample;
   Float x, y;
 };

@@ -8,7 +8,8 @@
 namespace komorebi {
 namespace {
 
-/// What an angle in radians, or a shift in pictures, may be at most: sin_cos_turns takes 2^20 turns.
+/// What an angle in radians, or a shift in pictures, may be at most: sin_cos_turns takes 2^20
+/// turns.
 constexpr double kMost = 1000.0;
 
 void check(bool good, const char* sentence) {

@@ -10,12 +10,12 @@ namespace komorebi {
 /// what it needs.
 struct PanoramaDesc {
   PanoramaKind kind = PanoramaKind::kEquirectangular;
-  double shift_x = 0.0, shift_y = 0.0;  ///< of the picture, in its widths and heights
+  double shift_x = 0.0, shift_y = 0.0;               ///< of the picture, in its widths and heights
   double longitude_min = -kPi, longitude_max = kPi;  ///< equirectangular, cylindrical
   double latitude_min = -0.5 * kPi, latitude_max = 0.5 * kPi;  ///< equirectangular
-  double height_min = -1.0, height_max = 1.0;  ///< cylindrical, in radii of the cylinder
-  double fov = kPi;                            ///< fisheye: from rim to rim
-  double focal_length = 10.5;                  ///< equisolid, mm
+  double height_min = -1.0, height_max = 1.0;        ///< cylindrical, in radii of the cylinder
+  double fov = kPi;                                  ///< fisheye: from rim to rim
+  double focal_length = 10.5;                        ///< equisolid, mm
   double sensor_width = 36.0, sensor_height = 24.0;  ///< equisolid, polynomial: of the frame, mm
   double polynomial[5] = {};  ///< fisheye_polynomial_k0…k4: radius in mm, angle in radians, negated
 };

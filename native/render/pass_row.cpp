@@ -10,7 +10,8 @@ namespace komorebi {
 namespace {
 
 /// The axes of the camera: right, up, and the way it looks; of a panorama those of Cycles, which
-/// turns it as it turns environment maps: the way it looks, left, up (a mirror ball: right, back, up).
+/// turns it as it turns environment maps: the way it looks, left, up (a mirror ball: right, back,
+/// up).
 Mat3d camera_axes(const CameraView& camera) {
   if (camera.kind == CameraKind::kPanorama) {
     const Mat3d& axes = camera.world_from_camera;

@@ -171,7 +171,9 @@ def test_what_is_no_lens_ends_with_a_sentence():
 def test_what_is_no_panorama_ends_with_a_sentence():
     settings = make_panoramic("FISHEYE_LENS_POLYNOMIAL")
     settings.fisheye_polynomial_k3 = math.nan
-    assert 'camera "Camera": the panorama\'s polynomial must have finite' in sentence_of(bpy.ops.render.render)
+    assert 'camera "Camera": the panorama\'s polynomial must have finite' in sentence_of(
+        bpy.ops.render.render
+    )
     settings = make_panoramic("EQUIRECTANGULAR")
     settings.latitude_min, settings.latitude_max = 1.0, -1.0  # upside down, as Cycles
     assert np.isfinite(support.exported_picture("Combined")).all()

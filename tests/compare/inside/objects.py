@@ -7,7 +7,7 @@ from typing import Any
 
 import bpy
 
-from compare.inside.settle import forget_animation, safe_name, settle, settle_all
+from compare.inside.settle import safe_name, settle, settle_all
 
 # Kinds of object that Komorebi does not render yet.
 KINDS = {

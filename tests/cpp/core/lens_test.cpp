@@ -77,11 +77,11 @@ TEST(Aperture, IsFilledEvenly) {
     std::vector<double> expected(kCells * kCells);
     std::vector<std::uint64_t> observed(kCells * kCells);
     for (int y = 0; y < kCells; ++y) {
-      auto row = cut(cut(whole, {0, 1}, 2.0 * y / kCells - 1.0), {0, -1},
-                     1.0 - 2.0 * (y + 1) / kCells);
+      auto row =
+          cut(cut(whole, {0, 1}, 2.0 * y / kCells - 1.0), {0, -1}, 1.0 - 2.0 * (y + 1) / kCells);
       for (int x = 0; x < kCells; ++x) {
-        const auto cell = cut(cut(row, {1, 0}, 2.0 * x / kCells - 1.0), {-1, 0},
-                              1.0 - 2.0 * (x + 1) / kCells);
+        const auto cell =
+            cut(cut(row, {1, 0}, 2.0 * x / kCells - 1.0), {-1, 0}, 1.0 - 2.0 * (x + 1) / kCells);
         const double share = cell.size() < 3 ? 0.0 : area_of(cell) / area_of(whole);
         expected[static_cast<std::size_t>(y * kCells + x)] = share < 1e-9 ? 0.0 : kSamples * share;
       }

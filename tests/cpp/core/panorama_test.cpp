@@ -84,11 +84,10 @@ Film project(const PanoramaDesc& p, const Vec3d& d) {
   return {(uv.x - p.shift_x) * kWidth, (uv.y - p.shift_y) * kHeight};
 }
 
-const PanoramaKind kKinds[] = {
-    PanoramaKind::kEquirectangular,     PanoramaKind::kFisheyeEquidistant,
-    PanoramaKind::kFisheyeEquisolid,    PanoramaKind::kMirrorBall,
-    PanoramaKind::kFisheyePolynomial,   PanoramaKind::kEquiangularCubeFace,
-    PanoramaKind::kCentralCylindrical};
+const PanoramaKind kKinds[] = {PanoramaKind::kEquirectangular,   PanoramaKind::kFisheyeEquidistant,
+                               PanoramaKind::kFisheyeEquisolid,  PanoramaKind::kMirrorBall,
+                               PanoramaKind::kFisheyePolynomial, PanoramaKind::kEquiangularCubeFace,
+                               PanoramaKind::kCentralCylindrical};
 
 // Whether a film point of pixels from the lower left corner lies in the circle; sure: not on it.
 struct Inside {

@@ -83,8 +83,7 @@ TEST(CameraPicture, BatchesAgreeWithOneRayAfterAnother) {
       ASSERT_TRUE(integrator.sample(pixels, 5, radiance.data(), Cancel()));
       for (std::size_t p = 0; p < pixels.size(); ++p) {
         for (std::uint32_t i = 0; i < 5; ++i) {
-          const PixelSample one =
-              render_sample(context, pixels[p].x, pixels[p].y, i, row.data());
+          const PixelSample one = render_sample(context, pixels[p].x, pixels[p].y, i, row.data());
           ASSERT_EQ(radiance[5 * p + i], one.radiance) << name << ' ' << p << ' ' << i;
         }
       }

@@ -29,14 +29,14 @@ std::shared_ptr<Scene> odd_scene() {
   sliver.face({0, 1, 2});
   sliver.face({0, 1, 3});
   return make_scene({{quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}).mesh()},
-                               {smooth, put(0, 0, 1, Vec3d(1))},
-                               {smooth, put(2, 1, 1, Vec3d(-1, 1, 0.5))},
-                               {flat, sheared},
-                               {flat, put(1, -2, 1, Vec3d(0.7, 0.7, 0))},
-                               {flat, put(0, 3, 1, Vec3d(1e-4))},
-                               {smooth, put(0, 700, 60, Vec3d(300))},
-                               {sliver.mesh(), put(-1, -2, 0.5, Vec3d(2))}},
-                              camera_at({4, -6, 3}, {0, 0, 0.8}, 160, 100));
+                     {smooth, put(0, 0, 1, Vec3d(1))},
+                     {smooth, put(2, 1, 1, Vec3d(-1, 1, 0.5))},
+                     {flat, sheared},
+                     {flat, put(1, -2, 1, Vec3d(0.7, 0.7, 0))},
+                     {flat, put(0, 3, 1, Vec3d(1e-4))},
+                     {smooth, put(0, 700, 60, Vec3d(300))},
+                     {sliver.mesh(), put(-1, -2, 0.5, Vec3d(2))}},
+                    camera_at({4, -6, 3}, {0, 0, 0.8}, 160, 100));
 }
 
 void expect_equal_to_surface_point(const std::shared_ptr<Scene>& scene, std::ptrdiff_t seen) {
