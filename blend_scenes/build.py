@@ -17,6 +17,7 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
+import cameras
 import closed_forms
 import demo
 import features
@@ -32,6 +33,7 @@ SCENES: dict[str, Callable[[], None]] = {
     **settings.SCENES,
     **visibility.SCENES,
     **strands.SCENES,
+    **cameras.SCENES,
 }
 
 

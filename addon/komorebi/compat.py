@@ -244,3 +244,11 @@ def curve_offsets(data: Any) -> IntArray:
     if len(data.curves):
         data.curve_offset_data.foreach_get("value", result)
     return result
+
+
+def panorama_settings(camera: Any) -> Any | None:
+    """What holds a camera's `panorama_type` and its numbers: the camera, or in old releases the
+    properties that the Cycles add-on gives it; None when that is switched off."""
+    if "panorama_type" in camera.bl_rna.properties:
+        return camera
+    return getattr(camera, "cycles", None)

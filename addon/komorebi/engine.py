@@ -25,7 +25,7 @@ class KomorebiRenderEngine(bpy.types.RenderEngine):
     bl_use_preview = False
     bl_use_shading_nodes_custom = False
     bl_use_eevee_viewport = True
-    bl_use_spherical_stereo = False
+    bl_use_spherical_stereo = True
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         # From 4.4 Blender passes arguments that the base class must see; 5.2 comes here twice.

@@ -75,10 +75,14 @@ def build(
             parts.environment,
             strength=world.strength, texture_from_world=world.texture_from_world,
         )  # fmt: skip
-    scene.set_camera(
-        camera.kind, camera.clip_from_world, camera.clip_start, camera.clip_end,
-        camera.width, camera.height,
-    )  # fmt: skip
+    try:
+        scene.set_camera(
+            camera.kind, camera.matrix, camera.clip_start, camera.clip_end,
+            camera.width, camera.height,
+            lens=camera.lens, panorama=camera.panorama, stereo=camera.stereo,
+        )  # fmt: skip
+    except ValueError as error:
+        raise ValueError(str(error).replace("camera:", f'camera "{camera.name}":', 1)) from error
     scene.commit(threads=threads, cancel=cancel)
     return scene
 

@@ -120,14 +120,23 @@ FLAG_SHADOW_CATCHER = 1 << 1
 
 @dataclass(slots=True)
 class CameraData:
-    """A camera by its projection × view matrix (clip space as OpenGL's), full frame in pixels."""
+    """A camera, full frame in pixels. `matrix` is projection × view (clip space as OpenGL's), of a
+    panorama the camera's pose: world from camera, its axes right, up, back.
 
-    kind: str  # PERSPECTIVE, ORTHOGRAPHIC
-    clip_from_world: DoubleArray  # [4, 4]
-    clip_start: float  # metres along the view axis
+    `lens`, `panorama` and `stereo` hold numbers by the names that the core knows
+    (native/render/camera_fields.h); None: a pinhole, no panorama, no eye that turns.
+    """
+
+    name: str
+    kind: str  # PERSPECTIVE, ORTHOGRAPHIC, PANORAMA
+    matrix: DoubleArray  # [4, 4]
+    clip_start: float  # metres along the view axis, of a panorama along the ray
     clip_end: float
     width: int
     height: int
+    lens: dict[str, float] | None = None
+    panorama: dict[str, Any] | None = None
+    stereo: dict[str, float] | None = None
 
 
 @dataclass(slots=True)

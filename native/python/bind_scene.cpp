@@ -8,6 +8,7 @@
 #include "io/image.h"
 #include "python/arrays.h"
 #include "python/bind.h"
+#include "python/camera_input.h"
 #include "render/content_hash.h"
 #include "render/scene.h"
 
@@ -122,15 +123,10 @@ void add_instances(Scene& scene, std::uint32_t mesh, const py::array& matrices,
   scene.add_instances(instances, name);
 }
 
-void set_camera(Scene& scene, const std::string& kind, const py::object& clip_from_world,
-                double clip_start, double clip_end, std::uint32_t width, std::uint32_t height) {
-  CameraDesc camera;
-  if (kind == "ORTHOGRAPHIC") {
-    camera.kind = CameraKind::kOrthographic;
-  } else if (kind != "PERSPECTIVE") {
-    throw std::invalid_argument("camera kind must be PERSPECTIVE or ORTHOGRAPHIC, not " + kind);
-  }
-  camera.clip_from_world = matrix4(view<double>(clip_from_world, "clip_from_world", {4, 4}).data());
+void set_camera(Scene& scene, const std::string& kind, const py::object& matrix, double clip_start,
+                double clip_end, std::uint32_t width, std::uint32_t height, const py::object& lens,
+                const py::object& panorama, const py::object& stereo) {
+  CameraDesc camera = camera_input(kind, matrix, lens, panorama, stereo);
   camera.clip_start = clip_start;
   camera.clip_end = clip_end;
   camera.width = width;
@@ -283,10 +279,15 @@ void bind_scene(py::module_& module) {
       .def("set_world_environment", &set_world_environment, py::arg("environment"),
            py::arg("strength") = 1.0, py::arg("texture_from_world") = py::none(),
            "texture_from_world: rotation, float64 [3, 3].")
-      .def("set_camera", &set_camera, py::arg("kind"), py::arg("clip_from_world"),
-           py::arg("clip_start"), py::arg("clip_end"), py::arg("width"), py::arg("height"),
-           "kind: PERSPECTIVE or ORTHOGRAPHIC. clip_from_world: projection @ view, float64 [4, 4]. "
-           "Clip distances in metres, width and height of the full frame in pixels.")
+      .def("set_camera", &set_camera, py::arg("kind"), py::arg("matrix"), py::arg("clip_start"),
+           py::arg("clip_end"), py::arg("width"), py::arg("height"), py::kw_only(),
+           py::arg("lens") = py::none(), py::arg("panorama") = py::none(),
+           py::arg("stereo") = py::none(),
+           "kind: PERSPECTIVE, ORTHOGRAPHIC or PANORAMA. matrix: projection @ view (clip from "
+           "world), of a panorama world from camera, float64 [4, 4]. Clip distances in metres, "
+           "width and height of the full frame in pixels. lens, panorama, stereo: dicts of numbers "
+           "by the names in native/render/camera_fields.h; panorama[\"kind\"] is Blender's "
+           "panorama_type.")
       .def("commit", &commit, py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
            "Builds the tree over instances; the scene is read only from here on.")
       .def_property_readonly("triangle_count", &Scene::triangle_count)

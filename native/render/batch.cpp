@@ -94,9 +94,7 @@ void BatchIntegrator::shade() {
     if (layout.size() > 0) clear_row(layout, row(i));
     if (!hits_[i].valid()) {
       const Vec3 direction(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]);
-      results_[i] = background(context_, direction);
-      put_environment(context_, direction, row(i));
-      put_matte(layout, results_[i], row(i));
+      results_[i] = missed(context_, direction, rays.t_max[i], row(i));
     } else if (!is_holdout(context_, hits_[i])) {
       results_[i].alpha = 1.0f;
       surfaces_.push(i, hits_[i], rays.time[i], pixels_[paths_[i].pixel].seed,

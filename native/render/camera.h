@@ -1,21 +1,42 @@
 #pragma once
 
 #include "core/camera.h"
+#include "render/panorama.h"
 
 namespace komorebi {
+
+/// A thin lens.
+struct LensDesc {
+  double radius = 0.0;          ///< of the opening, metres; 0: a pinhole
+  std::uint32_t blades = 0;     ///< of its polygon; fewer than 3: a disk
+  double rotation = 0.0;        ///< radians, counter-clockwise as seen from behind
+  double ratio = 1.0;           ///< how many times higher than wide the opening is
+  double focus_distance = 1.0;  ///< metres along the axis; panorama: along the ray
+};
+
+/// One eye of a stereo pair that turns with the direction looked in; see SphericalStereoView.
+struct StereoDesc {
+  double eye = 0.0;                   ///< metres to the right, negative: to the left; 0: no stereo
+  double convergence_distance = 0.0;  ///< metres; 0: parallel
+  double pole_merge_angle_from = 0.0, pole_merge_angle_to = 0.0;  ///< radians; to = 0: never
+};
 
 /// What a host knows of a camera. The matrix carries sensor fit, lens shift, pixel aspect and the
 /// picture's shape: clip space is Blender's and OpenGL's, −1…1 in x, y and z, y up.
 struct CameraDesc {
   CameraKind kind = CameraKind::kPerspective;
   Mat4d clip_from_world{1.0};  ///< projection · view; world in metres, from the world's own origin
-  double clip_start = 0.1, clip_end = 1000.0;  ///< metres along the axis
+  Mat4d world_from_camera{1.0};  ///< of a panorama, in place of the other; looks along −Z, Y up
+  double clip_start = 0.1, clip_end = 1000.0;  ///< metres along the axis; panorama: along the ray
   std::uint32_t width = 0, height = 0;         ///< of the whole frame, in pixels
+  LensDesc lens;
+  PanoramaDesc panorama;
+  StereoDesc stereo;
 };
 
 /// Inverts the matrix in double. std::invalid_argument with a sentence when the matrix is not
-/// finite or cannot be inverted, does not belong to the kind, or the clip distances are no
-/// interval.
+/// finite or cannot be inverted, does not belong to the kind, the clip distances are no interval,
+/// or lens, panorama (make_panorama) or stereo have numbers that stand for nothing.
 ///
 /// A perspective ray solves clip x = X·w and clip y = Y·w for the direction of unit w, so the clip
 /// z row, which is nearly parallel to w in distant scenes, costs no digits.

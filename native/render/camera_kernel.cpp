@@ -6,24 +6,43 @@
 namespace komorebi {
 namespace {
 
+void store(const Ray& ray, const CameraBlock& block, std::uint32_t i) {
+  for (int c = 0; c < 3; ++c) {
+    block.origin[c][i] = ray.origin[c];
+    block.direction[c][i] = ray.direction[c];
+  }
+  block.t_max[i] = ray.t_max;
+  block.time[i] = ray.time;
+}
+
 void start_rays_scalar(const RenderContext& context, const CameraBlock& block) {
   for (std::uint32_t i = 0; i < block.count; ++i) {
-    const Ray ray = start_ray(context, block.x[i], block.y[i], block.sample[i]);
-    for (int c = 0; c < 3; ++c) {
-      block.origin[c][i] = ray.origin[c];
-      block.direction[c][i] = ray.direction[c];
-    }
-    block.t_max[i] = ray.t_max;
-    block.time[i] = ray.time;
+    store(start_ray(context, block.x[i], block.y[i], block.sample[i]), block, i);
+  }
+}
+
+/// The rays of what draw_points has left.
+void project(const RenderContext& context, const CameraBlock& block) {
+  for (std::uint32_t i = 0; i < block.count; ++i) {
+    const Vec2 film(block.origin[0][i], block.origin[1][i]);
+    const Vec2 lens(block.direction[0][i], block.direction[1][i]);
+    store(camera_ray(context.camera, film, lens, block.time[i]), block, i);
   }
 }
 
 }  // namespace
 
 void start_rays(const RenderContext& context, const CameraBlock& block) {
-  const int kernel = active_kernel_index();
-  if (kernel >= 0) return kSimdCameraKernels[kernel]->start_rays(context, block);
-  start_rays_scalar(context, block);
+  const int index = active_kernel_index();
+  if (index < 0) return start_rays_scalar(context, block);
+  const CameraKernel& kernel = *kSimdCameraKernels[index];
+  const CameraView& camera = context.camera;
+  if (camera.kind != CameraKind::kPanorama && camera.stereo.eye == 0.0) {
+    return kernel.start_rays(context, block);
+  }
+  // Samplers and filter are most of the work; projections are many and short.
+  kernel.draw_points(context, block);
+  project(context, block);
 }
 
 }  // namespace komorebi

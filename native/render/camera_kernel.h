@@ -13,9 +13,12 @@ struct CameraBlock {
 };
 
 /// start_ray (one_ray.h) for many samples at once, compiled for one instruction set; equal to it in
-/// every bit. A camera ray starts at t_min = 0.
+/// every bit. A camera ray starts at t_min = 0. Panoramas and spherical stereo are not for it.
 struct CameraKernel {
   void (*start_rays)(const RenderContext& context, const CameraBlock& block);
+  /// Only what start_ray draws: time, the film point (in origin[0], [1]) and the point of the
+  /// square that the lens is drawn from (in direction[0], [1]).
+  void (*draw_points)(const RenderContext& context, const CameraBlock& block);
 };
 
 /// In the order of KOMOREBI_KERNELS (bvh/simd_targets.h).

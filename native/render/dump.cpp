@@ -195,14 +195,7 @@ void write_dump(const std::string& path, const Scene& scene, const Settings& set
   }
   put_instances(file, scene.inputs());
   put_world(file, scene);
-  const CameraDesc& camera = scene.camera_desc();
-  const std::uint32_t resolution[2] = {camera.width, camera.height};
-  file.put_value<std::uint32_t>("camera/kind", static_cast<std::uint32_t>(camera.kind));
-  file.put<double>("camera/clip_from_world", span_of(glm::value_ptr(camera.clip_from_world), 16),
-                   {4, 4});
-  file.put_value<double>("camera/clip_start", camera.clip_start);
-  file.put_value<double>("camera/clip_end", camera.clip_end);
-  file.put<std::uint32_t>("camera/resolution", resolution, {2});
+  put_camera(file, scene.camera_desc());
   put_settings(file, settings);
   file.write(path);
 }
@@ -212,16 +205,7 @@ DumpedRender read_dump(const std::string& path, ThreadPool& pool, const Cancel& 
   DumpedRender dumped;
   dumped.scene = std::make_shared<Scene>();
   dumped.settings = get_settings(file);
-  CameraDesc camera;
-  const auto kind = file.get_value<std::uint32_t>("camera/kind");
-  if (kind > 1) throw std::runtime_error("the scene's camera is of an unknown kind");
-  camera.kind = static_cast<CameraKind>(kind);
-  camera.clip_from_world = glm::make_mat4(file.get<double>("camera/clip_from_world", 16).data());
-  camera.clip_start = file.get_value<double>("camera/clip_start");
-  camera.clip_end = file.get_value<double>("camera/clip_end");
-  const auto resolution = file.get<std::uint32_t>("camera/resolution", 2);
-  camera.width = resolution[0];
-  camera.height = resolution[1];
+  const CameraDesc camera = get_camera(file);
   dumped.scene->set_camera(camera);
 
   const Settings& settings = dumped.settings;

@@ -21,18 +21,21 @@ struct DumpedRender {
 ///     mesh/N/name, origin, points  (points)
 ///     instance/mesh, world_from_object, object_index, mask, flags
 ///     world/color  or  world/texels, world/strength, world/texture_from_world
-///     camera/kind, clip_from_world, clip_start, clip_end, resolution
+///     camera/kind, clip_from_world or world_from_camera, clip_start, clip_end, resolution,
+///         lens/…*, panorama/…*, stereo/…*   by the names in camera_fields.h
 ///     settings/…   one value a setting, by its name on scene.komorebi
 ///
-/// (* only where the mesh has them.) Vertices, keys and points (x, y, z, radius) are relative to
-/// `origin`; matrices are column-major. Throws std::runtime_error naming the file.
+/// (* only where the mesh or camera has them.) Vertices, keys and points (x, y, z, radius) are
+/// relative to `origin`; matrices are column-major. Throws std::runtime_error naming the file.
 void write_dump(const std::string& path, const Scene& scene, const Settings& settings);
 
 /// Throws std::runtime_error or std::invalid_argument with a sentence naming what is wrong.
 DumpedRender read_dump(const std::string& path, ThreadPool& pool, const Cancel& cancel);
 
-/// The settings' part alone.
+/// The settings' and the camera's part alone.
 class ArrayFile;
+void put_camera(ArrayFile& file, const CameraDesc& camera);
+CameraDesc get_camera(const ArrayFile& file);
 void put_settings(ArrayFile& file, const Settings& settings);
 Settings get_settings(const ArrayFile& file);
 

@@ -27,6 +27,18 @@ PixelSample background(const RenderContext& context, const Vec3& direction) {
   return result;
 }
 
+PixelSample missed(const RenderContext& context, const Vec3& direction, float t_max, float* row) {
+  PixelSample result;
+  if (has_ray(t_max)) {
+    result = background(context, direction);
+    put_environment(context, direction, row);
+  } else {
+    result.alpha = 1.0f;
+  }
+  put_matte(context.passes, result, row);
+  return result;
+}
+
 namespace {
 
 /// Calls visit(drawn, visible) for the rays that could bring light to a point.
@@ -64,14 +76,11 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
   clear_row(layout, row);
   const Ray ray = start_ray(context, x, y, sample);
   const Hit hit = intersect_scalar(context.scene, ray);
-  if (!hit.valid() || is_holdout(context, hit)) {
-    PixelSample result;
-    if (!hit.valid()) {
-      result = background(context, ray.direction);
-      put_environment(context, ray.direction, row);
-    }
-    put_matte(layout, result, row);
-    return result;
+  if (!hit.valid()) return missed(context, ray.direction, ray.t_max, row);
+  if (is_holdout(context, hit)) {
+    const PixelSample hole;
+    put_matte(layout, hole, row);
+    return hole;
   }
   const SurfacePoint point = surface_point(context.scene, hit, ray);
   const Sampler sampler(context.seed, x, y);

@@ -12,6 +12,10 @@ Ray start_ray(const RenderContext& context, std::uint32_t x, std::uint32_t y, st
 /// What a camera ray that misses everything shows: the world as the camera sees it.
 PixelSample background(const RenderContext& context, const Vec3& direction);
 
+/// The same with its row of passes; opaque black where the camera sends no ray (has_ray,
+/// core/camera.h).
+PixelSample missed(const RenderContext& context, const Vec3& direction, float t_max, float* row);
+
 /// Whether what was hit is to be a hole in the picture.
 inline bool is_holdout(const RenderContext& context, const Hit& hit) {
   return (context.scene.instances[hit.instance].flags & kInstanceHoldout) != 0;

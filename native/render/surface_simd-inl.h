@@ -181,8 +181,10 @@ HWY_INLINE void finish_points(const RenderContext& context, const HitLanes& hit,
   const Vec3dLanes eye = {f64(camera.origin.x), f64(camera.origin.y), f64(camera.origin.z)};
   const Vec3dLanes gradient = {f64(camera.depth_gradient.x), f64(camera.depth_gradient.y),
                                f64(camera.depth_gradient.z)};
-  hn::StoreU(to_float(dot(difference(to_double(position), eye), gradient)), TagF(),
-             block.depth + to);
+  const Vec3dLanes from_eye = difference(to_double(position), eye);
+  const Double depth = camera.kind == CameraKind::kPanorama ? hn::Sqrt(dot(from_eye, from_eye))
+                                                            : dot(from_eye, gradient);
+  hn::StoreU(to_float(depth), TagF(), block.depth + to);
 }
 
 void surface_points(const RenderContext& context, const SurfaceBlock& block) {

@@ -243,6 +243,11 @@ def add_object(name, data, location=(0, 0, 0)):
     return obj
 
 
+def spoil(camera):
+    """Gives a camera object a lens that no picture can be taken with: the render says "focuses"."""
+    camera.data.dof.use_dof, camera.data.dof.focus_distance = True, 0.0
+
+
 def link_environment(image, world=None):
     """World with an Environment Texture of `image`; answers the texture node."""
     world = world or bpy.context.scene.world

@@ -119,5 +119,5 @@ def test_marker_switches_the_camera(folder):
     scene.camera = bpy.data.objects["Camera"]
     scene.frame_set(5)
     data = support.exported()
-    center = data.camera.clip_from_world @ np.array([0, 0, 0, 1.0])
+    center = data.camera.matrix @ np.array([0, 0, 0, 1.0])
     assert abs(center[3] - 40) < 1e-3, "the marker's camera looks straight down from 40 m"

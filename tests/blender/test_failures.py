@@ -34,9 +34,9 @@ def test_no_camera(folder):
     assert_fails(rendered(folder), folder, "camera")
 
 
-def test_unsupported_camera(folder):
-    bpy.context.scene.camera.data.type = "PANO"
-    assert_fails(rendered(folder), folder, f"{ERROR} Camera", "PANO")
+def test_camera_without_focus(folder):
+    support.spoil(bpy.context.scene.camera)
+    assert_fails(rendered(folder), folder, f"{ERROR} Camera", "focuses")
 
 
 def test_missing_map(folder):
@@ -124,11 +124,11 @@ def test_second_view_layer(folder):
 
 
 def test_frame_of_an_animation(folder):
-    """The camera turns into a panoramic one at frame 2: frame 1 stays, 2 and 3 are not there."""
+    """Another camera, without a focus, comes at frame 2: frame 1 stays, 2 and 3 are not there."""
     scene = bpy.context.scene
     scene.frame_end = 3
-    other = support.add_object("Pano", bpy.data.cameras.new("Pano"))
-    other.data.type = "PANO"
+    other = support.add_object("Spoilt", bpy.data.cameras.new("Spoilt"))
+    support.spoil(other)
     scene.timeline_markers.new("a", frame=1).camera = scene.camera
     scene.timeline_markers.new("b", frame=2).camera = other
     done = rendered(folder, "1..3")
@@ -140,8 +140,8 @@ def failing_second_scene():
     scene = bpy.context.scene
     second = bpy.data.scenes.new("Second")
     support.small(second)
-    camera = bpy.data.objects.new("Pano", bpy.data.cameras.new("Pano"))
-    camera.data.type = "PANO"
+    camera = bpy.data.objects.new("Spoilt", bpy.data.cameras.new("Spoilt"))
+    support.spoil(camera)
     second.collection.objects.link(camera)
     second.camera = camera
     return scene, second
@@ -152,7 +152,7 @@ def test_scene_strip(folder):
     editor = scene.sequence_editor_create()
     strips = editor.strips if hasattr(editor, "strips") else editor.sequences
     strips.new_scene("Strip", second, 1, 1)
-    assert_fails(rendered(folder), folder, ERROR, "PANO")
+    assert_fails(rendered(folder), folder, ERROR, "focuses")
 
 
 def test_scene_strip_in_two_frames(folder):
@@ -160,7 +160,7 @@ def test_scene_strip_in_two_frames(folder):
     editor = scene.sequence_editor_create()
     strips = editor.strips if hasattr(editor, "strips") else editor.sequences
     strips.new_scene("Strip", second, 1, 1).frame_final_duration = 2
-    assert_fails(rendered(folder, "1,2"), folder, ERROR, "PANO")
+    assert_fails(rendered(folder, "1,2"), folder, ERROR, "focuses")
 
 
 def test_second_scene_of_the_compositor(folder):
@@ -175,12 +175,12 @@ def test_second_scene_of_the_compositor(folder):
     output.base_path = str(folder / "out")
     tree.links.new(layers.outputs["Image"], output.inputs[0])
     tree.links.new(layers.outputs["Image"], tree.nodes["Composite"].inputs["Image"])
-    assert_fails(rendered(folder), folder, ERROR, "PANO")
+    assert_fails(rendered(folder), folder, ERROR, "focuses")
 
 
 def test_strip_and_compositor_that_work_pass(folder):
     scene, second = failing_second_scene()
-    second.camera.data.type = "PERSP"
+    second.camera.data.dof.use_dof = False
     editor = scene.sequence_editor_create()
     strips = editor.strips if hasattr(editor, "strips") else editor.sequences
     strips.new_scene("Strip", second, 1, 1)
@@ -191,7 +191,6 @@ def test_strip_and_compositor_that_work_pass(folder):
 def test_a_warning_stops_nothing(folder):
     scene = bpy.context.scene
     scene.render.use_motion_blur = True
-    scene.camera.data.dof.use_dof = True
     done = rendered(folder)
     assert done.code == 0 and f"{WARNING} motion blur" in done.output, done
     assert support.pictures(folder / "out") == ["picture_0001.png"]

@@ -35,6 +35,8 @@ class Job:
     flat: bool = False
     world_image: str | None = None
     frame: int | None = None
+    camera: str | None = None
+    stereo: str | None = None
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,12 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument(
         "--frame", type=int, help="the frame (default: the one the file was saved at)"
     )
+    made.add_argument("--camera", help="the camera object to look through (default: the scene's)")
+    made.add_argument(
+        "--stereo",
+        choices=("plain", "spherical"),
+        help="render both eyes of Stereo 3D side by side, with or without spherical stereo",
+    )
     made.add_argument("--flat", action="store_true", help="shade Cycles with the geometric normal")
     made.add_argument(
         "--world-image", type=Path, help="light world mode with this equirectangular picture"
@@ -99,6 +105,8 @@ def jobs(options: argparse.Namespace, scene: Path, mode: str) -> tuple[Job, Job]
         if options.world_image and mode == "world"
         else None,
         frame=options.frame,
+        camera=options.camera,
+        stereo=options.stereo,
     )
     seeds = [seed + SECOND_SEED for seed in first.seeds]
     return first, Job(**{**vars(first), "engine": options.second, "seeds": seeds})

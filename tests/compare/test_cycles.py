@@ -45,6 +45,16 @@ def test_a_file_that_is_no_blend_is_refused(tmp_path: Path, capsys: pytest.Captu
     assert "CYCLES: Blender ended with exit code 3" in capsys.readouterr().err
 
 
+@needs_blender
+def test_a_camera_that_is_not_there_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    scene = str(SCENES / "panorama.blend")
+    options = ["--camera", "Nobody", "--out", str(tmp_path), "--blender", BLENDER]
+    assert tool.main([scene, *options]) == 2
+    assert "the scene has no camera 'Nobody'" in capsys.readouterr().err
+
+
 def test_a_missing_file_is_refused(capsys: pytest.CaptureFixture) -> None:
     with pytest.raises(SystemExit) as end:
         tool.main(["/nowhere/at-all.blend"])

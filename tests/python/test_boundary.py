@@ -72,6 +72,10 @@ def test_non_finite_vertices_are_counted() -> None:
         core.Mesh("木", **mesh_arguments(positions=positions))
 
 
+def set_panorama(scene: core.Scene, panorama: object, lens: object = None) -> None:
+    scene.set_camera("PANORAMA", np.eye(4), 0.1, 10.0, 8, 8, panorama=panorama, lens=lens)
+
+
 BAD_INSTANCES: dict[str, Callable[[core.Scene, int], None]] = {
     r"matrices must have shape": lambda s, m: s.add_instances(m, np.eye(4), np.zeros(4, np.uint32)),
     r"object_index must have shape \(1\)": lambda s, m: s.add_instances(
@@ -87,6 +91,23 @@ BAD_INSTANCES: dict[str, Callable[[core.Scene, int], None]] = {
         np.diag([1.0, 2.0, 1.0]),
     ),
     r"colour times its strength": lambda s, m: s.set_world_color((0.0, float("nan"), 0.0)),
+    r"needs a panorama": lambda s, m: set_panorama(s, None),
+    r"a panorama needs a kind": lambda s, m: set_panorama(s, {}),
+    r"no panorama of kind TUNNEL": lambda s, m: set_panorama(s, {"kind": "TUNNEL"}),
+    r'panorama has no "focus"': lambda s, m: set_panorama(s, {"kind": "MIRRORBALL", "focus": 1.0}),
+    r'panorama\["fov"\] is no number': lambda s, m: set_panorama(
+        s, {"kind": "FISHEYE_EQUIDISTANT", "fov": "wide"}
+    ),
+    r"sensor must have a width": lambda s, m: set_panorama(
+        s, {"kind": "FISHEYE_EQUISOLID", "sensor_width": 0.0}
+    ),
+    r"focal length of more than 0": lambda s, m: set_panorama(
+        s, {"kind": "FISHEYE_EQUISOLID", "focal_length": 0.0}
+    ),
+    r"lens must be a dict": lambda s, m: set_panorama(s, {"kind": "MIRRORBALL"}, lens=0.1),
+    r"focus distance must be more than 0": lambda s, m: set_panorama(
+        s, {"kind": "MIRRORBALL"}, lens={"radius": 0.1, "focus_distance": 0.0}
+    ),
     r"camera kind": lambda s, m: s.set_camera("FISHEYE", np.eye(4), 0.1, 10.0, 8, 8),
 }
 

@@ -1,4 +1,4 @@
-"""Blender's camera → one projection × view matrix, computed in doubles.
+"""Blender's camera → one projection × view matrix, computed in doubles; lens, panorama, stereo.
 
 The projection is Blender's own (sensor fit, lens shift, pixel aspect), from the camera's
 parameters rather than from `calc_matrix_camera`, which rounds to single precision.
@@ -13,16 +13,18 @@ import numpy as np
 
 from ..errors import RenderError
 from ..scene_data import CameraData, DoubleArray
+from .lens import lens_numbers
 from .names import name_of
+from .panorama import panorama_numbers, stereo_numbers
 
-KINDS = {"PERSP": "PERSPECTIVE", "ORTHO": "ORTHOGRAPHIC"}
+KINDS = {"PERSP": "PERSPECTIVE", "ORTHO": "ORTHOGRAPHIC", "PANO": "PANORAMA"}
 
 
 @dataclass(slots=True)
 class Lens:
     """What shapes a camera's picture. Lengths of sensor and lens in mm, clip distances in m."""
 
-    kind: str  # PERSP, ORTHO
+    kind: str  # PERSP, ORTHO, PANO
     focal_length: float
     ortho_scale: float  # m across the fitted side
     sensor_fit: str  # AUTO, HORIZONTAL, VERTICAL
@@ -82,26 +84,35 @@ def camera_from_world(world_from_object: DoubleArray) -> DoubleArray:
 
 
 def export_camera(engine: Any, depsgraph: Any, view: str) -> CameraData:
-    """The camera that renders this frame (scene's, marker's or strip's), for stereo `view`."""
+    """The camera that renders this frame (scene's, marker's, strip's or the view's), for `view`."""
+    if view:
+        engine.active_view_set(view)  # from here on `camera_override` is the view's camera
     camera = camera_object(engine, depsgraph)
     lens = read_lens(camera)
+    stereo = None
+    world_from_object = np.array(camera.matrix_world, np.float64, order="C")
     if view:
-        engine.active_view_set(view)
-        world_from_object = np.array(engine.camera_model_matrix(camera), np.float64).reshape(4, 4)
-        lens.shift_x = engine.camera_shift_x(camera)
-    else:
-        world_from_object = np.array(camera.matrix_world, np.float64)
+        spherical = engine.use_spherical_stereo(camera)
+        matrix = engine.camera_model_matrix(camera, use_spherical_stereo=spherical)
+        world_from_object = np.array(matrix, np.float64, order="C").reshape(4, 4)
+        lens.shift_x = engine.camera_shift_x(camera, use_spherical_stereo=spherical)
+        stereo = stereo_numbers(camera, view) if spherical else None
+    view_matrix = camera_from_world(world_from_object)
     render = depsgraph.scene.render
     width, height = engine.resolution_x, engine.resolution_y
-    clip_from_camera = projection(lens, width, height, render.pixel_aspect_x, render.pixel_aspect_y)
-    return CameraData(
-        kind=KINDS[lens.kind],
-        clip_from_world=clip_from_camera @ camera_from_world(world_from_object),
-        clip_start=lens.clip_start,
-        clip_end=lens.clip_end,
-        width=width,
-        height=height,
-    )
+    aspect = (render.pixel_aspect_x, render.pixel_aspect_y)
+    data = CameraData(
+        name=name_of(camera), kind=KINDS[lens.kind], matrix=view_matrix, width=width, height=height,
+        clip_start=lens.clip_start, clip_end=lens.clip_end,
+        lens=lens_numbers(camera, depsgraph, world_from_object), stereo=stereo,
+    )  # fmt: skip
+    if lens.kind == "PANO":
+        data.matrix = world_from_object
+        shift = (lens.shift_x, lens.shift_y)
+        data.panorama = panorama_numbers(camera, width, height, aspect, shift)
+    else:
+        data.matrix = projection(lens, width, height, *aspect) @ view_matrix
+    return data
 
 
 def camera_object(engine: Any, depsgraph: Any) -> Any:
@@ -119,8 +130,8 @@ def read_lens(camera: Any) -> Lens:
         raise RenderError(f'Object "{name_of(camera)}" is used as a camera but is none')
     if data.type not in KINDS:
         raise RenderError(
-            f'Camera "{name_of(camera)}" is of type {data.type}, which is not supported yet: '
-            "make it perspective or orthographic"
+            f'Camera "{name_of(camera)}" is of type {data.type}: cameras written in Open Shading '
+            "Language are not supported, make it perspective, orthographic or panoramic"
         )
     return Lens(
         kind=data.type, focal_length=data.lens, ortho_scale=data.ortho_scale,

@@ -1,4 +1,4 @@
-"""A camera for files that have none, or whose camera is not a camera."""
+"""The camera: one for files that have none, and what neither engine may take differently."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from typing import Any
 
 import bpy
 from mathutils import Matrix, Vector
+
+from compare.inside.settle import require, settle
 
 BACK = Vector((0.62, -0.68, 0.39)).normalized()
 
@@ -49,3 +51,39 @@ def ensure_camera(scene: Any, depsgraph: Any) -> list[str]:
     scene.collection.objects.link(camera)
     scene.camera = camera
     return ["no camera in the file: one that frames everything added"]
+
+
+def look_through(scene: Any, name: str) -> None:
+    """Make the object `name` the scene's camera, whatever markers say. Raises KeyError when there
+    is none."""
+    if name not in scene.objects or scene.objects[name].type != "CAMERA":
+        raise KeyError(f"the scene has no camera {name!r}")
+    for marker in scene.timeline_markers:
+        marker.camera = None
+    settle(scene, "camera", scene.objects[name])
+
+
+def both_eyes(scene: Any, spherical: bool) -> None:
+    """Stereo 3D, the eyes side by side in one picture."""
+    require(scene.render, use_multiview=True, views_format="STEREO_3D")
+    for view in scene.render.views:
+        view.use = True
+    require(scene.render.image_settings, views_format="STEREO_3D")
+    require(
+        scene.render.image_settings.stereo_3d_format,
+        display_mode="SIDEBYSIDE",
+        use_squeezed_frame=False,
+        use_sidebyside_crosseyed=False,
+    )
+    require(scene.camera.data.stereo, use_spherical_stereo=spherical)
+
+
+def supported_camera(camera: Any) -> list[str]:
+    """Lens and panorama stay as they are; a camera of a kind that Komorebi lacks becomes
+    perspective."""
+    data = camera.data
+    notes = []
+    if data.type not in {"PERSP", "ORTHO", "PANO"}:
+        notes.append(f"camera of type {data.type} made perspective")
+        settle(data, "type", "PERSP")
+    return notes

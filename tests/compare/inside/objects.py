@@ -7,7 +7,7 @@ from typing import Any
 
 import bpy
 
-from compare.inside.settle import forget_animation, safe_name, settle, settle_all
+from compare.inside.settle import safe_name, settle, settle_all
 
 # Kinds of object that Komorebi does not render yet.
 KINDS = {
@@ -68,17 +68,3 @@ def unsupported_instances(depsgraph: Any) -> list[str]:
         if instance.is_instance and instance.object.type in KINDS:
             found[f"{KINDS[instance.object.type]} made by {safe_name(instance.parent)}"] += 1
     return [f"NOT switched off: {count} {name}" for name, count in sorted(found.items())]
-
-
-def still_camera(camera: Any) -> list[str]:
-    """Depth of field off; a panoramic camera becomes a perspective one."""
-    notes = []
-    data = camera.data
-    if data.dof.use_dof:
-        notes.append("depth of field")
-    settle(data.dof, "use_dof", False)
-    if data.type not in {"PERSP", "ORTHO"}:
-        notes.append(f"camera of type {data.type} made perspective")
-        settle(data, "type", "PERSP")
-    forget_animation(data, "type")
-    return notes

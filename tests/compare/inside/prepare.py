@@ -31,6 +31,8 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
     scene = bpy.context.scene
     if job["frame"] is not None:
         scene.frame_set(job["frame"])
+    if job["camera"] is not None:
+        camera.look_through(scene, job["camera"])
     notes = render_settings.set_size(scene, job["longest"])
     render_settings.set_output(scene)
     layer, more = render_settings.choose_view_layer(scene, job["view_layer"])
@@ -43,11 +45,13 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
     depsgraph = layer.depsgraph
     depsgraph.update()
     notes += camera.ensure_camera(scene, depsgraph)
-    notes += objects.still_camera(scene.camera) + objects.unsupported_instances(depsgraph)
+    notes += camera.supported_camera(scene.camera) + objects.unsupported_instances(depsgraph)
     samples = job["samples"]
     if any(thing.is_shadow_catcher for thing in scene.objects):
         samples *= CATCHER_SAMPLES
         notes.append(f"shadow catchers: {CATCHER_SAMPLES} times the samples")
+    if job["stereo"] is not None:
+        camera.both_eyes(scene, job["stereo"] == "spherical")
     if job["engine"] == "CYCLES":
         engines.set_cycles(scene, samples)
     else:

@@ -68,5 +68,36 @@ TEST(CameraKernel, EveryFilterAndKind) {
   }
 }
 
+CameraDesc with_lens(CameraDesc camera, std::uint32_t blades) {
+  camera.lens = {0.2, blades, 0.7, 1.4, 5.0};
+  return camera;
+}
+
+TEST(CameraKernel, EveryLensPanoramaAndEye) {
+  const FilterTable filter(PixelFilter::kBlackmanHarris, 1.5f);
+  const auto check = [&](const CameraDesc& camera) {
+    const auto scene = committed(make_scene({{sphere(8, {0, 0, 0}, 1.0, false).mesh()}}, camera));
+    expect_equal_to_scalar(make_context(*scene, Settings{}, filter.view()));
+  };
+  const CameraDesc perspective = camera_at({5, -4, 3}, {0, 0, 0.8}, 150, 90);
+  for (const std::uint32_t blades : {0u, 3u, 5u, 16u}) {
+    check(with_lens(perspective, blades));
+    check(with_lens(probe_at({0, 0, 1}, {0, 0.6, 0.8}, 2.0), blades));
+  }
+  CameraDesc eye = perspective;
+  eye.stereo = {0.1, 3.0, 0.1, 0.5};
+  check(eye);
+  check(with_lens(eye, 6));
+  CameraDesc panorama = perspective;
+  panorama.kind = CameraKind::kPanorama;
+  panorama.panorama.fov = 2.0;
+  panorama.panorama.polynomial[1] = -0.05;
+  for (std::uint32_t kind = 0; kind < 7; ++kind) {
+    panorama.panorama.kind = static_cast<PanoramaKind>(kind);
+    check(panorama);
+    check(with_lens(panorama, 5));
+  }
+}
+
 }  // namespace
 }  // namespace komorebi::testing

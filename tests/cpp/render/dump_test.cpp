@@ -70,6 +70,31 @@ TEST_F(Dump, OfADumpIsTheSameFile) {
   EXPECT_EQ(bytes(), first);
 }
 
+TEST_F(Dump, KeepsLensPanoramaAndEye) {
+  const auto original = scene();
+  CameraDesc camera = original->camera_desc();
+  camera.lens = {0.1, 5, 0.3, 1.2, 4.0};
+  camera.stereo = {-0.03, 2.0, 1.0, 1.2};
+  const auto check = [&] {
+    original->set_camera(camera);
+    write_dump(path_, *original, settings());
+    const std::string first = bytes();
+    const DumpedRender read = read_dump(path_, shared_pool(), Cancel());
+    EXPECT_EQ(read.scene->camera_desc().lens.ratio, 1.2);
+    EXPECT_EQ(read.scene->camera_desc().stereo.pole_merge_angle_to, 1.2);
+    EXPECT_EQ(read.scene->camera_desc().panorama.polynomial[4],
+              camera.kind == CameraKind::kPanorama ? 0.5 : 0.0);
+    write_dump(path_, *read.scene, read.settings);
+    EXPECT_EQ(bytes(), first);
+  };
+  check();
+  camera.kind = CameraKind::kPanorama;
+  camera.world_from_camera[3] = glm::dvec4(4005, -4, 3, 1);
+  camera.panorama.kind = PanoramaKind::kFisheyePolynomial;
+  camera.panorama.polynomial[4] = 0.5;
+  check();
+}
+
 TEST_F(Dump, CutShortAnywhereIsRefused) {
   write_dump(path_, *scene(), settings());
   const std::string whole = bytes();

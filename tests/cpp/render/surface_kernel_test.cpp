@@ -28,19 +28,18 @@ std::shared_ptr<Scene> odd_scene() {
   }
   sliver.face({0, 1, 2});
   sliver.face({0, 1, 3});
-  return committed(make_scene({{quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}).mesh()},
-                               {smooth, put(0, 0, 1, Vec3d(1))},
-                               {smooth, put(2, 1, 1, Vec3d(-1, 1, 0.5))},
-                               {flat, sheared},
-                               {flat, put(1, -2, 1, Vec3d(0.7, 0.7, 0))},
-                               {flat, put(0, 3, 1, Vec3d(1e-4))},
-                               {smooth, put(0, 700, 60, Vec3d(300))},
-                               {sliver.mesh(), put(-1, -2, 0.5, Vec3d(2))}},
-                              camera_at({4, -6, 3}, {0, 0, 0.8}, 160, 100)));
+  return make_scene({{quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}).mesh()},
+                     {smooth, put(0, 0, 1, Vec3d(1))},
+                     {smooth, put(2, 1, 1, Vec3d(-1, 1, 0.5))},
+                     {flat, sheared},
+                     {flat, put(1, -2, 1, Vec3d(0.7, 0.7, 0))},
+                     {flat, put(0, 3, 1, Vec3d(1e-4))},
+                     {smooth, put(0, 700, 60, Vec3d(300))},
+                     {sliver.mesh(), put(-1, -2, 0.5, Vec3d(2))}},
+                    camera_at({4, -6, 3}, {0, 0, 0.8}, 160, 100));
 }
 
-TEST(SurfaceKernel, EqualsSurfacePoint) {
-  const auto scene = odd_scene();
+void expect_equal_to_surface_point(const std::shared_ptr<Scene>& scene, std::ptrdiff_t seen) {
   const FilterTable filter(PixelFilter::kBlackmanHarris, 1.5f);
   const RenderContext context = make_context(*scene, Settings{}, filter.view());
   RayBatch rays;
@@ -73,8 +72,21 @@ TEST(SurfaceKernel, EqualsSurfacePoint) {
     }
   }
   force_instruction_set("");
+  EXPECT_GE(std::count_if(hit_once.begin(), hit_once.end(), [](auto n) { return n > 0; }), seen);
+}
+
+TEST(SurfaceKernel, EqualsSurfacePoint) {
   // All but the tiny one are in the picture.
-  EXPECT_GE(std::count_if(hit_once.begin(), hit_once.end(), [](auto n) { return n > 0; }), 7);
+  expect_equal_to_surface_point(committed(odd_scene()), 7);
+}
+
+TEST(SurfaceKernel, DepthOfAPanoramaIsEqualToo) {
+  const auto scene = odd_scene();
+  CameraDesc camera = scene->camera_desc();
+  camera.kind = CameraKind::kPanorama;
+  camera.world_from_camera[3] = glm::dvec4(4, -6, 3, 1);
+  scene->set_camera(camera);
+  expect_equal_to_surface_point(committed(scene), 4);
 }
 
 }  // namespace
