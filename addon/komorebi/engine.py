@@ -22,10 +22,17 @@ class KomorebiRenderEngine(bpy.types.RenderEngine):
 
     bl_idname = ENGINE_ID
     bl_label = "Komorebi"
-    bl_use_preview = False
-    bl_use_shading_nodes_custom = False
-    bl_use_eevee_viewport = True
+    bl_use_preview = False  # previews of materials and worlds are not made yet
+    bl_use_postprocess = True  # the compositor and the sequencer go over the picture
+    bl_use_image_save = True
+    bl_use_custom_freestyle = False  # Blender draws strokes itself, else they come as a scene here
+    bl_use_shading_nodes_custom = False  # Blender's own shader nodes
+    bl_use_eevee_viewport = True  # Material Preview is EEVEE's
+    bl_use_gpu_context = False
     bl_use_spherical_stereo = True
+    bl_use_stereo_viewport = False
+    bl_use_alembic_procedural = False  # Blender reads Alembic files, frame by frame
+    bl_use_materialx = False
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         # From 4.4 Blender passes arguments that the base class must see; 5.2 comes here twice.

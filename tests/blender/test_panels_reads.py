@@ -25,9 +25,12 @@ SETTINGS = (
 )  # fmt: skip
 ELSEWHERE = {
     **{f"border_{end}_{axis}": "drawn into the view" for end in ("min", "max") for axis in "xy"},
+    "focus_subtarget": "drawn where the focus object is an armature",
     "frame_current": "the timeline",
     "holdout": "the outliner's column and menu",
     "indirect_only": "the outliner's menu",
+    "kink": "drawn where strands have children",
+    "kink_extra_steps": "drawn where strands have children that wind",
     "matrix_world": "by Transform",
     "use_nodes": "always on from 5.0, drawn before",
 }
