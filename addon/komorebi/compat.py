@@ -26,6 +26,17 @@ def cycles_or(block: Any, otherwise: Any) -> Any:
     return otherwise if settings is None else settings
 
 
+def shadow_terminator(obj: Any) -> tuple[float, float]:
+    """An object's shadow terminator offsets, of geometry and shading; the defaults without Cycles,
+    to which they belonged up to 4.1."""
+    if hasattr(obj, "shadow_terminator_geometry_offset"):
+        return obj.shadow_terminator_geometry_offset, obj.shadow_terminator_shading_offset
+    settings = cycles_or(obj, None)
+    if settings is None:
+        return 0.1, 0.0
+    return settings.shadow_terminator_geometry_offset, settings.shadow_terminator_offset
+
+
 def set_rect(render_pass: Any, pixels: FloatArray) -> None:
     """Writes float32 `pixels` [height, width, channels] into a render pass of that size."""
     channels = pixels.shape[2]

@@ -94,6 +94,10 @@ def tables(data: SceneData) -> dict[str, Any]:
     return {
         "object_pass_index": np.array([o.pass_index for o in data.objects], np.float32),
         "object_mattes": np.array(mattes, np.uint32).reshape(-1, 2).view(np.float32),
+        "object_terminators": np.array(
+            [(o.terminator_geometry_offset, o.terminator_shading_offset) for o in data.objects],
+            np.float32,
+        ).reshape(-1, 2),
         "material_pass_index": np.array([m.pass_index for m in materials], np.float32),
         "material_mattes": np.array([name_id(m.name) for m in materials], np.uint32).view(
             np.float32

@@ -166,6 +166,10 @@ class ObjectData:
     name: str
     pass_index: int
     asset: str  # the name of the object that it hangs on in the end, itself without a parent
+    # Shadow terminator: the cosine below which rays leave above coarse smooth faces; how much of
+    # the cosine's end is cut off, 0 to 1.
+    terminator_geometry_offset: float = 0.0
+    terminator_shading_offset: float = 0.0
 
 
 @dataclass(slots=True)

@@ -147,11 +147,13 @@ void set_world_environment(Scene& scene, std::shared_ptr<const Environment> envi
 }
 
 void set_tables(Scene& scene, const py::object& object_pass_index, const py::object& object_mattes,
-                const py::object& material_pass_index, const py::object& material_mattes,
-                const py::object& slot_begin, const py::object& slots) {
+                const py::object& object_terminators, const py::object& material_pass_index,
+                const py::object& material_mattes, const py::object& slot_begin,
+                const py::object& slots) {
   const auto object_index = view<float>(object_pass_index, "object_pass_index", {-1});
   const auto objects = static_cast<py::ssize_t>(object_index.size());
   const auto object_ids = view<float>(object_mattes, "object_mattes", {objects, 2});
+  const auto terminator = view<float>(object_terminators, "object_terminators", {objects, 2});
   const auto material_index = view<float>(material_pass_index, "material_pass_index", {-1});
   const auto materials = static_cast<py::ssize_t>(material_index.size());
   const auto material_ids = view<float>(material_mattes, "material_mattes", {materials});
@@ -160,7 +162,8 @@ void set_tables(Scene& scene, const py::object& object_pass_index, const py::obj
   SceneTables tables;
   for (std::size_t i = 0; i < object_index.size(); ++i) {
     tables.objects.push_back({object_index[i], std::bit_cast<std::uint32_t>(object_ids[2 * i]),
-                              std::bit_cast<std::uint32_t>(object_ids[2 * i + 1])});
+                              std::bit_cast<std::uint32_t>(object_ids[2 * i + 1]),
+                              terminator[2 * i], 1.0f / (1.0f - 0.5f * terminator[2 * i + 1])});
   }
   for (std::size_t i = 0; i < material_index.size(); ++i) {
     tables.materials.push_back({material_index[i], std::bit_cast<std::uint32_t>(material_ids[i])});
@@ -265,10 +268,12 @@ void bind_scene(py::module_& module) {
            "matrices: world from object, float64 or float32 [N, 4, 4], M @ p; object_index, mask, "
            "flags, material_slots (which list of set_tables): uint32 [N].")
       .def("set_tables", &set_tables, py::kw_only(), py::arg("object_pass_index"),
-           py::arg("object_mattes"), py::arg("material_pass_index"), py::arg("material_mattes"),
-           py::arg("slot_begin"), py::arg("slots"),
+           py::arg("object_mattes"), py::arg("object_terminators"), py::arg("material_pass_index"),
+           py::arg("material_mattes"), py::arg("slot_begin"), py::arg("slots"),
            "What passes tell of objects and materials. Pass indices and Cryptomatte ids: float32 "
-           "[N], object_mattes [N, 2] of object and asset. List l of material slots is "
+           "[N], object_mattes [N, 2] of object and asset. object_terminators: float32 [N, 2], "
+           "Blender's shadow_terminator_geometry_offset and the shading one, 0 to 1. List l of "
+           "material slots is "
            "slots[slot_begin[l]:slot_begin[l + 1]], indices of materials; uint32 both.")
       .def(
           "set_world_color",

@@ -16,6 +16,8 @@ RenderContext ambient_context(const RenderContext& given, float distance) {
   context.light_distance = distance;
   context.light_mask = kMaskShadow;
   context.light_dimension = kVertexAmbient;
+  context.lifts_rays = context.has_terminators;
+  context.cuts_cosines = context.bends_round = false;
   return context;
 }
 

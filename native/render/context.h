@@ -24,7 +24,10 @@ struct RenderContext {
   Vec3 albedo{1.0f};            ///< of every surface; 1 for ambient occlusion
   float light_distance = 0.0f;  ///< largest t of a light ray
   float cosine_share = 1.0f;  ///< share of light rays drawn from the cosine; the rest from the map
-  std::uint32_t light_mask = kMaskShadow;                   ///< of light rays
+  std::uint32_t light_mask = kMaskShadow;  ///< of light rays
+  /// Whether rays may leave above coarse smooth surfaces, and then go below their own triangle, or
+  /// cosines be cut (core/terminator.h).
+  bool has_terminators = false, lifts_rays = false, bends_round = false, cuts_cosines = false;
   VertexDimension light_dimension = kVertexLightDirection;  ///< that light rays are drawn by
   bool transparent = false;
   std::uint32_t seed = 0;

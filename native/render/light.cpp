@@ -79,6 +79,26 @@ LightSample sample_light(const RenderContext& context, const SurfacePoint& point
   return sample_ambient(context, point, Vec2(to_unit_float(bits.x), to_unit_float(bits.y)));
 }
 
+Terminator terminator(const RenderContext& context, const Hit& hit, const Vec3& geometric_normal) {
+  Terminator result;
+  if (!context.has_terminators) return result;
+  const InstanceView& instance = context.scene.instances[hit.instance];
+  const ObjectInfo object = context.tables->object(instance.object_index);
+  if (object.terminator_cutoff > 0.0f) {
+    result.lift = smooth_lift(instance, context.scene.meshes[instance.mesh], hit, geometric_normal);
+    if (result.lift != Vec3(0.0f)) result.cutoff = object.terminator_cutoff;
+  }
+  result.frequency = object.terminator_frequency;
+  return result;
+}
+
+float terminate(const RenderContext& context, const Terminator& t, float cosine,
+                float geometric_cosine, Vec3& contribution) {
+  if (context.cuts_cosines && t.frequency > 1.0f) contribution *= cosine_left(t.frequency, cosine);
+  return context.lifts_rays && t.cutoff > 0.0f ? lifted_share(t.cutoff, cosine, geometric_cosine)
+                                               : 0.0f;
+}
+
 Ray light_ray(const RenderContext& context, const SurfacePoint& point, const Hit& hit,
               const Vec3& direction, float time) {
   Ray ray;

@@ -2,6 +2,7 @@
 
 #include "core/sampler.h"
 #include "core/surface_point.h"
+#include "core/terminator.h"
 #include "render/context.h"
 
 namespace komorebi {
@@ -17,6 +18,14 @@ struct LightSample {
 /// low-discrepancy set. Every surface is a white (or clay) Lambertian reflector.
 LightSample sample_light(const RenderContext& context, const SurfacePoint& point,
                          const Sampler& sampler, std::uint32_t index);
+
+/// The shadow terminator of a point, on the side that light comes from.
+Terminator terminator(const RenderContext& context, const Hit& hit, const Vec3& geometric_normal);
+
+/// Multiplies what a ray brings by what the terminator leaves of it, and returns how much of the
+/// lift the ray starts at. Cosines to the shading normal (positive) and the geometric one.
+float terminate(const RenderContext& context, const Terminator& terminator, float cosine,
+                float geometric_cosine, Vec3& contribution);
 
 /// The shadow ray of a light sample.
 Ray light_ray(const RenderContext& context, const SurfacePoint& point, const Hit& hit,

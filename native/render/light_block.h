@@ -38,6 +38,13 @@ class LightBlockBuffer {
   Vec3 direction(std::uint32_t place) const { return entry(0, place); }
   Vec3 contribution(std::uint32_t place) const { return entry(3, place); }
 
+  std::size_t size() const { return t_max_.size(); }  ///< places
+  void set_contribution(std::uint32_t place, const Vec3& contribution) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      drawn_[(3 + c) * t_max_.size() + place] = contribution[static_cast<int>(c)];
+    }
+  }
+
   /// Lends `bundles` the rays, all of them as long as `t_max`.
   void lend(RayBundles& bundles, float t_max) {
     if (t_max_.front() != t_max) std::fill(t_max_.begin(), t_max_.end(), t_max);

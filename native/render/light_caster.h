@@ -1,9 +1,10 @@
 #pragma once
 
-#include <bit>
 #include <vector>
 
 #include "bvh/traverse.h"
+#include "render/lifted_rays.h"
+#include "render/light.h"
 #include "render/light_block.h"
 #include "render/surface_batch.h"
 
@@ -17,7 +18,7 @@ struct RayTally {
 class LightCaster {
  public:
   explicit LightCaster(const RenderContext& context)
-      : context_(context), block_(context.light_samples) {}
+      : context_(context), block_(context.light_samples), state_(block_.size()) {}
 
   std::uint32_t block_size() const { return block_.capacity(); }
   std::uint64_t ray_count() const { return rays_; }
@@ -29,18 +30,15 @@ class LightCaster {
   template <class Visit>
   void cast(const SurfaceBatch& surfaces, std::uint32_t begin, std::uint32_t end,
             const Visit& visit) {
-    draw(surfaces, begin, end);
-    trace(surfaces, begin, end, context_.light_mask, first_ray_, places_, blocked_);
-    tally_.cast += places_.size();
-    for (const std::uint32_t word : blocked_) {
-      tally_.blocked += static_cast<std::uint64_t>(std::popcount(word));
-    }
-    for (std::uint32_t p = 0; p < end - begin; ++p) {
-      for (std::uint32_t k = first_ray_[p]; k < first_ray_[p + 1]; ++k) {
-        const std::uint32_t place = places_[k];
-        visit(begin + p, block_.direction(place), block_.contribution(place), !bit(blocked_, k));
-      }
-    }
+    block_.draw(context_, surfaces.light_block(context_, begin, end));
+    terminate_rays(surfaces, begin, end);
+    tally_.cast -= rays_;
+    tally_.blocked += trace(surfaces, begin, end, context_.light_mask, kDrawn, kBlocked);
+    tally_.cast += rays_;
+    for_each_drawn(end - begin, [&](std::uint32_t p, std::uint32_t place) {
+      visit(begin + p, block_.direction(place), block_.contribution(place),
+            !(state_[place] & kBlocked));
+    });
   }
 
   /// After cast: calls visit(surface, contribution) for the rays of surfaces that `is_catcher`
@@ -48,65 +46,117 @@ class LightCaster {
   template <class IsCatcher, class Visit>
   void cast_alone(const SurfaceBatch& surfaces, std::uint32_t begin, std::uint32_t end,
                   const IsCatcher& is_catcher, const Visit& visit) {
-    again_first_.clear();
-    again_.clear();
-    for (std::uint32_t p = 0; p < end - begin; ++p) {
-      again_first_.push_back(static_cast<std::uint32_t>(again_.size()));
-      if (!is_catcher(begin + p)) continue;
-      for (std::uint32_t k = first_ray_[p]; k < first_ray_[p + 1]; ++k) {
-        if (bit(blocked_, k)) again_.push_back(places_[k]);  // what nothing blocks, no catcher does
-      }
-    }
-    again_first_.push_back(static_cast<std::uint32_t>(again_.size()));
-    trace(surfaces, begin, end, context_.light_mask << kMaskCatcherShift, again_first_, again_,
-          blocked_again_);
-    for (std::uint32_t p = 0; p < end - begin; ++p) {
-      if (!is_catcher(begin + p)) continue;
-      std::uint32_t next = again_first_[p];
-      for (std::uint32_t k = first_ray_[p]; k < first_ray_[p + 1]; ++k) {
-        if (bit(blocked_, k) && bit(blocked_again_, next++)) continue;
-        visit(begin + p, block_.contribution(places_[k]));
-      }
-    }
+    for_each_drawn(end - begin, [&](std::uint32_t p, std::uint32_t place) {
+      // What nothing blocks, no catcher does.
+      if ((state_[place] & kBlocked) && is_catcher(begin + p)) state_[place] |= kAgain;
+    });
+    trace(surfaces, begin, end, context_.light_mask << kMaskCatcherShift, kAgain, kBlockedAgain);
+    for_each_drawn(end - begin, [&](std::uint32_t p, std::uint32_t place) {
+      if (!is_catcher(begin + p) || (state_[place] & kBlockedAgain)) return;
+      visit(begin + p, block_.contribution(place));
+    });
   }
 
  private:
-  static bool bit(const std::vector<std::uint32_t>& bits, std::uint32_t i) {
-    return (bits[i / 32] >> (i % 32)) & 1u;
+  /// Of a ray: drawn with light to bring, lifted from its point, blocked; to be traced again among
+  /// shadow catchers, blocked by one.
+  enum State : std::uint8_t {
+    kDrawn = 1,
+    kLifted = 2,
+    kBlocked = 4,
+    kAgain = 8,
+    kBlockedAgain = 16
+  };
+
+  /// Calls visit(point, place) in the order drawn.
+  template <class Visit>
+  void for_each_drawn(std::uint32_t points, const Visit& visit) const {
+    for (std::uint32_t p = 0; p < points; ++p) {
+      for (std::uint32_t j = 0; j < context_.light_samples; ++j) {
+        const std::uint32_t place = block_.place(p, j);
+        if (state_[place] & kDrawn) visit(p, place);
+      }
+    }
   }
 
-  void draw(const SurfaceBatch& surfaces, std::uint32_t begin, std::uint32_t end) {
-    block_.draw(context_, surfaces.light_block(begin, end));
+  /// Sets every ray's state, and how far it is lifted.
+  void terminate_rays(const SurfaceBatch& surfaces, std::uint32_t begin, std::uint32_t end) {
+    const bool terminators = context_.has_terminators;
+    if (terminators) share_.resize(block_.size());
+    for (std::uint32_t p = 0; p < end - begin; ++p) {
+      const Terminator t = terminators ? surfaces.terminator(begin + p) : Terminator();
+      const bool plain = t.cutoff == 0.0f && t.frequency == 1.0f;
+      for (std::uint32_t j = 0; j < context_.light_samples; ++j) {
+        const std::uint32_t place = block_.place(p, j);
+        Vec3 contribution = block_.contribution(place);
+        state_[place] = contribution != Vec3(0.0f) ? kDrawn : 0;
+        if (plain || !state_[place]) continue;
+        const Vec3 direction = block_.direction(place);
+        share_[place] =
+            terminate(context_, t, glm::dot(direction, surfaces.normal(begin + p)),
+                      glm::dot(direction, surfaces.geometric_normal(begin + p)), contribution);
+        if (context_.cuts_cosines && t.frequency > 1.0f)
+          block_.set_contribution(place, contribution);
+        if (share_[place] > 0.0f) state_[place] |= kLifted;
+      }
+    }
+  }
+
+  /// Traces the rays that have the bit `wanted`, and sets `blocked` in those that hit something;
+  /// returns how many.
+  std::uint64_t trace(const SurfaceBatch& surfaces, std::uint32_t begin, std::uint32_t end,
+                      std::uint32_t mask, std::uint8_t wanted, std::uint8_t blocked) {
     first_ray_.clear();
     places_.clear();
+    lifted_.clear();
     for (std::uint32_t p = 0; p < end - begin; ++p) {
       first_ray_.push_back(static_cast<std::uint32_t>(places_.size()));
       for (std::uint32_t j = 0; j < context_.light_samples; ++j) {
         const std::uint32_t place = block_.place(p, j);
-        if (block_.contribution(place) != Vec3(0.0f)) places_.push_back(place);
+        if (!(state_[place] & wanted)) continue;
+        if (state_[place] & kLifted) {
+          const Vec3 direction = block_.direction(place);
+          const bool above = glm::dot(direction, surfaces.geometric_normal(begin + p)) > 0.0f;
+          lifted_.push(surfaces, begin + p, place, share_[place], !above);
+        } else {
+          places_.push_back(place);
+        }
       }
     }
     first_ray_.push_back(static_cast<std::uint32_t>(places_.size()));
-  }
-
-  void trace(const SurfaceBatch& surfaces, std::uint32_t begin, std::uint32_t end,
-             std::uint32_t mask, const std::vector<std::uint32_t>& first_ray,
-             const std::vector<std::uint32_t>& places, std::vector<std::uint32_t>& blocked) {
     RayBundles bundles{};
     surfaces.lend(bundles, begin, end);
+    bundles.first_ray = first_ray_.data();
+    bundles.place = places_.data();
+    std::uint64_t count = trace(bundles, places_, mask, blocked);
+    if (lifted_.size() == 0) return count;
+    bundles = {};
+    lifted_.lend(bundles);
+    return count + trace(bundles, lifted_.places(), mask, blocked);
+  }
+
+  std::uint64_t trace(RayBundles& bundles, const std::vector<std::uint32_t>& places,
+                      std::uint32_t mask, std::uint8_t blocked) {
     block_.lend(bundles, context_.light_distance);
-    bundles.first_ray = first_ray.data();
-    bundles.place = places.data();
     bundles.mask = mask;
-    blocked.resize((places.size() + 31) / 32);
-    occluded(context_.scene, bundles, blocked.data());
+    bits_.resize((places.size() + 31) / 32);
+    occluded(context_.scene, bundles, bits_.data());
     rays_ += places.size();
+    std::uint64_t count = 0;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      if (!((bits_[k / 32] >> (k % 32)) & 1u)) continue;
+      state_[places[k]] |= blocked;
+      ++count;
+    }
+    return count;
   }
 
   RenderContext context_;
   LightBlockBuffer block_;
-  std::vector<std::uint32_t> first_ray_, places_, blocked_;  // of the rays traced: RayBundles
-  std::vector<std::uint32_t> again_first_, again_, blocked_again_;
+  std::vector<std::uint8_t> state_;                       // State bits of each place
+  std::vector<float> share_;                              // of the lift, of each place
+  std::vector<std::uint32_t> first_ray_, places_, bits_;  // of the rays traced: RayBundles
+  LiftedRays lifted_;
   std::uint64_t rays_ = 0;
   RayTally tally_;
 };

@@ -46,11 +46,21 @@ template <class Visit>
 void for_each_light_ray(const RenderContext& context, const SurfacePoint& point, const Hit& hit,
                         const Sampler& sampler, std::uint32_t sample, float time,
                         const Visit& visit) {
+  const Terminator end = terminator(context, hit, point.geometric_normal);
+  SurfacePoint lit = point;
+  if (context.bends_round && end.cutoff > 0.0f) lit.geometric_normal = point.normal;
   for (std::uint32_t j = 0; j < context.light_samples; ++j) {
-    const LightSample drawn =
-        sample_light(context, point, sampler, sample * context.light_samples + j);
+    LightSample drawn = sample_light(context, lit, sampler, sample * context.light_samples + j);
     if (drawn.contribution == Vec3(0.0f)) continue;
-    const Ray ray = light_ray(context, point, hit, drawn.direction, time);
+    const float geometric_cosine = glm::dot(drawn.direction, point.geometric_normal);
+    const float share = terminate(context, end, glm::dot(drawn.direction, point.normal),
+                                  geometric_cosine, drawn.contribution);
+    Ray ray = light_ray(context, point, hit, drawn.direction, time);
+    if (share > 0.0f) {
+      ray.origin += share * end.lift;
+      // What lies below its own triangle has to pass over its edge.
+      if (!(geometric_cosine > 0.0f)) ray.self_instance = ray.self_primitive = kNone;
+    }
     visit(drawn, !occluded_scalar(context.scene, ray));
   }
 }

@@ -9,6 +9,8 @@ namespace komorebi {
 struct ObjectInfo {
   float pass_index = 0.0f;
   std::uint32_t matte = 0, matte_asset = 0;
+  float terminator_cutoff = 0.0f;     ///< Blender's shadow_terminator_geometry_offset
+  float terminator_frequency = 1.0f;  ///< 1 / (1 − shadow_terminator_offset / 2)
 };
 
 struct MaterialInfo {
@@ -23,6 +25,14 @@ struct SceneTables {
   /// List l of material slots is slots[slot_begin[l]] to slots[slot_begin[l + 1] − 1]; a face with
   /// a slot beyond the last has the last.
   std::vector<std::uint32_t> slot_begin, slots;
+
+  /// Whether any object has a shadow terminator of its own.
+  bool has_terminators() const {
+    for (const ObjectInfo& o : objects) {
+      if (o.terminator_cutoff > 0.0f || o.terminator_frequency > 1.0f) return true;
+    }
+    return false;
+  }
 
   ObjectInfo object(std::uint32_t index) const {
     return index < objects.size() ? objects[index] : ObjectInfo{};

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/ray_bundles.h"
+#include "render/light.h"
 #include "render/light_kernel.h"
 #include "render/surface_kernel.h"
 
@@ -26,6 +27,12 @@ class SurfaceBatch {
   std::uint32_t path(std::uint32_t i) const { return path_[i]; }
   float depth(std::uint32_t i) const { return floats_[9][i]; }
   Vec3 normal(std::uint32_t i) const { return vector(0, i); }
+  Vec3 geometric_normal(std::uint32_t i) const { return vector(3, i); }
+  float time(std::uint32_t i) const { return floats_[10][i]; }
+  std::uint32_t instance(std::uint32_t i) const { return instance_[i]; }
+  std::uint32_t primitive(std::uint32_t i) const { return primitive_[i]; }
+  /// When the context has any (fill).
+  const Terminator& terminator(std::uint32_t i) const { return terminators_[i]; }
   Vec3 leaving_origin(std::uint32_t i) const { return vector(6, i); }
 
   void push(std::uint32_t path, const Hit& hit, float time, std::uint32_t pixel_seed,
@@ -52,6 +59,17 @@ class SurfaceBatch {
     }
     block.depth = floats_[9].data();
     surface_points(context, block);
+    terminators_.clear();
+    if (!context.has_terminators) return;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      terminators_.push_back(komorebi::terminator(context, hits[path_[i]], geometric_normal(i)));
+    }
+    if (!context.bends_round) return;
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::uint32_t i = 0; i < count_; ++i) {
+        floats_[11 + c][i] = floats_[(terminators_[i].cutoff > 0.0f ? 0 : 3) + c][i];
+      }
+    }
   }
 
   /// Lends `bundles` points [begin, end), which their light rays leave.
@@ -66,12 +84,13 @@ class SurfaceBatch {
   }
 
   /// For the light rays of points [begin, end).
-  LightBlock light_block(std::uint32_t begin, std::uint32_t end) const {
+  LightBlock light_block(const RenderContext& context, std::uint32_t begin,
+                         std::uint32_t end) const {
     LightBlock block{};
     block.point_count = end - begin;
     for (std::size_t c = 0; c < 3; ++c) {
       block.normal[c] = &floats_[c][begin];
-      block.geometric_normal[c] = &floats_[3 + c][begin];
+      block.geometric_normal[c] = &floats_[(context.bends_round ? 11 : 3) + c][begin];
     }
     block.pixel_seed = &pixel_seed_[begin];
     block.first_index = &first_index_[begin];
@@ -87,7 +106,9 @@ class SurfaceBatch {
 
   std::uint32_t count_ = 0;
   std::vector<std::uint32_t> path_, pixel_seed_, first_index_, instance_, primitive_;
-  std::vector<float> floats_[11];  // normal, geometric normal, leaving origin, depth, time
+  std::vector<Terminator> terminators_;
+  // normal, geometric normal, leaving origin, depth, time, and the normal above which light comes
+  std::vector<float> floats_[14];
 };
 
 }  // namespace komorebi

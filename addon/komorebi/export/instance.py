@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import reporting
+from .. import compat, reporting
 from ..errors import RenderCancelled
 from ..scene_data import InstanceData, ObjectData, SceneData
 from ..unchanged import Unchanged
@@ -118,7 +118,9 @@ def _object_data(original: Any) -> ObjectData:
     root = original
     while root.parent is not None:
         root = root.parent
-    return ObjectData(name_of(original), original.pass_index, name_of(root))
+    return ObjectData(
+        name_of(original), original.pass_index, name_of(root), *compat.shadow_terminator(original)
+    )
 
 
 def _build(group: _Group, shape: int, name: str) -> InstanceData:

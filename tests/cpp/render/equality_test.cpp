@@ -58,7 +58,7 @@ Settings small_settings(Method method) {
 /// shadow or not to be seen, materials and UVs.
 std::shared_ptr<Scene> telling_scene() {
   Polygons ground = quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0});
-  const Polygons ball = sphere(24, Vec3d(0), 1.0, true), cube = box(Vec3d(-0.5), Vec3d(0.5));
+  const Polygons ball = sphere(7, Vec3d(0), 1.0, true), cube = box(Vec3d(-0.5), Vec3d(0.5));
   auto scene = std::make_shared<Scene>();
   MeshInput input = ground.input();
   const std::vector<float> uvs = {0, 0, 8, 0, 8, 8, 0, 8};
@@ -86,7 +86,10 @@ std::shared_ptr<Scene> telling_scene() {
       {cube_mesh, at(0, -2, 0.5), 2, kMaskAll, kInstanceShadowCatcher, 1}};
   scene->add_instances(instances, "test");
   SceneTables tables;
-  tables.objects = {{1.0f, 101, 201}, {2.0f, 102, 201}, {3.0f, 103, 202}, {4.0f, 104, 202}};
+  tables.objects = {{1.0f, 101, 201},
+                    {2.0f, 102, 201, 0.1f, 1.0f},
+                    {3.0f, 103, 202, 0.1f, 1.4f},
+                    {4.0f, 104, 202}};
   tables.materials = {{5.0f, 301}, {6.0f, 302}};
   tables.slot_begin = {0, 1, 3};
   tables.slots = {0, 1, 0};

@@ -59,7 +59,7 @@ void expect_equal_to_surface_point(const std::shared_ptr<Scene>& scene, std::ptr
       ++hit_once[hits[i].instance];
     }
     surfaces.fill(context, hits.data(), rays.span());
-    const LightBlock block = surfaces.light_block(0, surfaces.size());
+    const LightBlock block = surfaces.light_block(context, 0, surfaces.size());
     for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
       const std::uint32_t i = surfaces.path(s);
       const SurfacePoint expected = surface_point(context.scene, hits[i], rays.span()[i]);

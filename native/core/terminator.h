@@ -1,0 +1,83 @@
+#pragma once
+
+#include "core/math.h"
+#include "core/scene_view.h"
+
+namespace komorebi {
+
+/// What keeps coarse smooth meshes from shadowing themselves in facets where light grazes them, as
+/// Cycles does it (intern/cycles/kernel/light/sample.h and kernel/closure/bsdf.h, release 3.4): rays
+/// that graze leave a point above the flat triangle, and the cosine's last part is cut off.
+struct Terminator {
+  Vec3 lift{0.0f};         ///< world space: from the triangle to about the smooth surface
+  float cutoff = 0.0f;     ///< cosine below which rays are lifted; 0: none
+  float frequency = 1.0f;  ///< of the cosine over the angle, at least 1
+};
+
+namespace detail {
+
+/// How far the planes through the corners along their normals reach above a point of the triangle,
+/// at least: the envelope of a convex surface.
+inline float convex_reach(const Vec3 (&corner)[3], const Vec3 (&normal)[3], const Vec3& at,
+                          float side) {
+  float least = 3.402823466e+38f;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 to_next = side * (corner[(i + 1) % 3] - corner[i]);
+    const Vec3 to_last = side * (corner[(i + 2) % 3] - corner[i]);
+    float rise = glm::max(glm::dot(to_next, normal[i]), glm::dot(to_last, normal[i]));
+    rise = glm::max(rise, 0.0f);
+    rise = glm::max(glm::dot(side * (corner[i] - at), normal[i]) + rise, 0.0f);
+    least = glm::min(least, rise);
+  }
+  return least;
+}
+
+}  // namespace detail
+
+/// From a hit on a smooth triangle to the surface that its normals tell of, in world space; null
+/// where the triangle is flat. `geometric_normal` is on the side that light comes from.
+inline Vec3 smooth_lift(const InstanceView& instance, const MeshView& mesh, const Hit& hit,
+                        const Vec3& geometric_normal) {
+  const bool smooth = mesh.kind == PrimitiveKind::kTriangle && mesh.normals &&
+                      (!mesh.tri2smooth || mesh.tri2smooth[hit.primitive]);
+  if (!smooth) return Vec3(0.0f);
+  Vec3 corner[3], normal[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t at = 3 * std::size_t{hit.primitive} + k;
+    const float* p = mesh.vtx2xyz + 3 * std::size_t{mesh.tri2vtx[at]};
+    const float* n = mesh.normals + 3 * std::size_t{mesh.tri2normal[at]};
+    corner[k] = Vec3(p[0], p[1], p[2]);
+    normal[k] = Vec3(n[0], n[1], n[2]);
+  }
+  const float v = hit.u, w = hit.v, u = 1.0f - v - w;
+  const Vec3 at = u * corner[0] + v * corner[1] + w * corner[2];
+  const Vec3 up = u * normal[0] + v * normal[1] + w * normal[2];
+  const Vec3 world_up = instance.world_from_local * up;  // as long as the object is stretched
+
+  // The height of a paraboloid through the corners with about these normals.
+  const float bend_u = glm::dot(normal[2] - normal[0], corner[0] - corner[2]);
+  const float bend_v = glm::dot(normal[2] - normal[1], corner[1] - corner[2]);
+  const float bend_uv = glm::dot(normal[1] - normal[0], corner[1] - corner[0]);
+  const float height =
+      bend_u * u * (u - 1.0f) + (bend_u + bend_v + bend_uv) * u * v + bend_v * v * (v - 1.0f);
+  const bool outer = glm::dot(world_up, geometric_normal) > 0.0f;
+  const float reach = detail::convex_reach(corner, normal, at, outer ? 1.0f : -1.0f);
+  return world_up * (outer ? glm::max(reach, 0.5f * height) : glm::min(-reach, 0.5f * height));
+}
+
+/// Which part of the lift a ray starts at: all of it where it grazes, none from the cutoff on.
+/// Cosines to the shading normal (positive) and the geometric one.
+inline float lifted_share(float cutoff, float cosine, float geometric_cosine) {
+  const float share = cosine < cutoff ? 2.0f - (geometric_cosine + cosine) / cutoff
+                                      : 1.0f - geometric_cosine / cutoff;
+  return glm::clamp(share, 0.0f, 1.0f);
+}
+
+/// What remains of light that comes at this cosine > 0: cos(frequency · angle) / cos(angle).
+inline float cosine_left(float frequency, float cosine) {
+  const float c = glm::min(cosine, 1.0f);
+  const float angle = atan2_radians(std::sqrt(1.0f - c * c), c);
+  return glm::max(sin_cos_turns(angle * frequency * kInvTwoPi).cos, 0.0f) / c;
+}
+
+}  // namespace komorebi
