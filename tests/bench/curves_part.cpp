@@ -24,12 +24,10 @@ RayList camera_rays(std::uint32_t size) {
   for (std::uint32_t block = 0; block < (size / 8) * (size / 8); ++block) {
     for (std::uint32_t i = 0; i < 64; ++i) {
       const double x = 8.0 * (block % (size / 8)) + i % 8 + 0.5;
-      const double y =
-          8.0 * (block / (size / 8)) + i / 8 + 0.5;  // NOLINT(bugprone-integer-division)
+      const double y = 8.0 * (block / (size / 8)) + i / 8 + 0.5;  // NOLINT(bugprone-integer-division)
       Ray ray;
       ray.origin = Vec3(0, -4, 0);
-      ray.direction =
-          Vec3(glm::normalize(Vec3d(0.7 * (x / size - 0.5), 1.0, 0.7 * (y / size - 0.5))));
+      ray.direction = Vec3(glm::normalize(Vec3d(0.7 * (x / size - 0.5), 1.0, 0.7 * (y / size - 0.5))));
       rays.push_back(ray);
     }
   }
@@ -58,6 +56,21 @@ RayList light_rays(const RayList& camera, const std::vector<Hit>& hits, std::uin
   return rays;
 }
 
+void print_build(const std::string& shape, const std::string& engine, const std::string& tree,
+                 const Curves& curves, double seconds, double bytes) {
+  const auto strands = double(curves.offsets.size() - 1);
+  JsonRow("curves")
+      .text("kind", "build")
+      .text("shape", shape)
+      .text("engine", engine)
+      .text("tree", tree)
+      .number("strands", strands)
+      .number("segments", double(curves.radius.size()) / strands - 1.0)
+      .number("build_seconds", seconds)
+      .number("bytes", bytes)
+      .print();
+}
+
 }  // namespace
 
 void curves_part(const Options& options) {
@@ -69,28 +82,20 @@ void curves_part(const Options& options) {
   ThreadPool pool(threads);
   for (const std::string& shape : options.list("shapes", "RIBBON,THICK")) {
     const bool ribbon = shape == "RIBBON";
-    const Curves curves = testing::made_fur(strands, segments, length, width, 1.5,
-                                            ribbon ? CurveShape::kRibbon : CurveShape::kThick);
+    const Curves curves =
+        testing::made_fur(strands, segments, length, width, 1.5,
+                          ribbon ? CurveShape::kRibbon : CurveShape::kThick);
     std::unique_ptr<EmbreeCurves> peer;
-    const double their_build =
-        seconds_of([&] { peer = std::make_unique<EmbreeCurves>(curves, 5, threads); });
-    JsonRow("curves")
-        .text("shape", shape)
-        .text("engine", "embree")
-        .number("build", their_build)
-        .number("megabytes", peer->byte_count() / 1e6)
-        .print();
+    const double their_build = seconds_of([&] {
+      peer = std::make_unique<EmbreeCurves>(curves, 5, threads);
+    });
+    print_build(shape, "embree", "", curves, their_build, peer->byte_count());
     for (const std::string& builder : options.list("builders", "LINEAR,SAH")) {
       std::shared_ptr<const Mesh> mesh;
-      const double build = seconds_of(
-          [&] { mesh = Mesh::build(curves.input(), builder_from_name(builder), pool, Cancel()); });
-      JsonRow("curves")
-          .text("shape", shape)
-          .text("engine", "komorebi")
-          .text("tree", builder)
-          .number("build", build)
-          .number("megabytes", double(mesh->byte_count()) / 1e6)
-          .print();
+      const double build = seconds_of([&] {
+        mesh = Mesh::build(curves.input(), builder_from_name(builder), pool, Cancel());
+      });
+      print_build(shape, "komorebi", builder, curves, build, double(mesh->byte_count()));
       Scene scene;
       const InstanceInput instance{scene.add_mesh(mesh), Mat4d(1.0), 0, kMaskAll, 0};
       scene.add_instances({&instance, 1}, "fur");
@@ -134,24 +139,24 @@ void curves_part(const Options& options) {
         other += hits[i].primitive != theirs[i].primitive ? 1u : 0u;
       }
       for (std::uint32_t i = 0; i < light.size(); ++i) {
-        const unsigned a = (bits[i / 32] >> (i % 32)) & 1u,
-                       b = (their_bits[i / 32] >> (i % 32)) & 1u;
+        const unsigned a = (bits[i / 32] >> (i % 32)) & 1u, b = (their_bits[i / 32] >> (i % 32)) & 1u;
         blocked += a;
         differing += a != b ? 1 : 0;
       }
       const char* names[] = {"camera", "camera", "light", "light"};
       for (std::size_t k = 0; k < contenders.size(); ++k) {
         const double rays = k < 2 ? double(camera.size()) : double(light.size());
-        const double least = *std::min_element(seconds[k].begin(), seconds[k].end());
+        const bool ours = k % 2 == 0;
         JsonRow("curves")
+            .text("kind", "rays")
             .text("shape", shape)
             .text("rays", names[k])
-            .text("engine", k % 2 ? "embree" : "komorebi")
-            .text("tree", k % 2 ? "" : builder)
+            .text("engine", ours ? "komorebi" : "embree")
+            .text("tree", ours ? builder : "")
+            .text("beside", builder)
             .number("count", rays)
-            .number("million_a_second", rays / least / 1e6)
-            .number("met", k < 2 ? double(met) / rays : double(blocked) / rays)
-            .number("differing", k < 2 ? double(other) / rays : double(differing) / rays)
+            .number("met_share", double(k < 2 ? met : blocked) / rays)
+            .number("differing_share", double(k < 2 ? other : differing) / rays)
             .numbers("seconds", seconds[k])
             .print();
       }
