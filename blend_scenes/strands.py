@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import bpy
 from common import add_camera, add_mesh, add_sphere, empty_scene, link, set_world
@@ -89,7 +90,7 @@ def node_tree(thing: bpy.types.Object) -> bpy.types.NodeTree:
 def chain(tree: bpy.types.NodeTree, *kinds: str) -> list[bpy.types.Node]:
     """Nodes of these kinds between input and output, each first output into the first input."""
     nodes = [tree.nodes.new(kind) for kind in ("NodeGroupInput", *kinds, "NodeGroupOutput")]
-    for before, after in zip(nodes, nodes[1:], strict=False):
+    for before, after in pairwise(nodes):
         tree.links.new(before.outputs[0], after.inputs[0])
     return nodes[1:-1]
 
@@ -106,7 +107,7 @@ def hair_curves() -> None:
     radius.inputs["Radius"].default_value = 0.006
     ball = add_sphere("Ball", 0.5, (1.2, 0.0, 0.7), level=3)
     tree = node_tree(ball)
-    spread, put, real, radius, join = chain(
+    spread, put, _real, radius, join = chain(
         tree, "GeometryNodeDistributePointsOnFaces", "GeometryNodeInstanceOnPoints",
         "GeometryNodeRealizeInstances", "GeometryNodeSetCurveRadius", "GeometryNodeJoinGeometry",
     )  # fmt: skip

@@ -12,7 +12,8 @@ namespace komorebi {
 /// on a grid over the whole set (MeshView::leaf_grid); the radius is the upper half of a float.
 struct RoundLeaf {
   std::uint32_t item;
-  std::uint32_t entry;  ///< of a curve's segment2key, so that nothing else stands between it and the keys
+  std::uint32_t
+      entry;  ///< of a curve's segment2key, so that nothing else stands between it and the keys
   std::uint16_t begin[3], end[3];
   std::uint16_t radius;
 };

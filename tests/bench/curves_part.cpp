@@ -24,10 +24,12 @@ RayList camera_rays(std::uint32_t size) {
   for (std::uint32_t block = 0; block < (size / 8) * (size / 8); ++block) {
     for (std::uint32_t i = 0; i < 64; ++i) {
       const double x = 8.0 * (block % (size / 8)) + i % 8 + 0.5;
-      const double y = 8.0 * (block / (size / 8)) + i / 8 + 0.5;  // NOLINT(bugprone-integer-division)
+      const double y =
+          8.0 * (block / (size / 8)) + i / 8 + 0.5;  // NOLINT(bugprone-integer-division)
       Ray ray;
       ray.origin = Vec3(0, -4, 0);
-      ray.direction = Vec3(glm::normalize(Vec3d(0.7 * (x / size - 0.5), 1.0, 0.7 * (y / size - 0.5))));
+      ray.direction =
+          Vec3(glm::normalize(Vec3d(0.7 * (x / size - 0.5), 1.0, 0.7 * (y / size - 0.5))));
       rays.push_back(ray);
     }
   }
@@ -82,19 +84,16 @@ void curves_part(const Options& options) {
   ThreadPool pool(threads);
   for (const std::string& shape : options.list("shapes", "RIBBON,THICK")) {
     const bool ribbon = shape == "RIBBON";
-    const Curves curves =
-        testing::made_fur(strands, segments, length, width, 1.5,
-                          ribbon ? CurveShape::kRibbon : CurveShape::kThick);
+    const Curves curves = testing::made_fur(strands, segments, length, width, 1.5,
+                                            ribbon ? CurveShape::kRibbon : CurveShape::kThick);
     std::unique_ptr<EmbreeCurves> peer;
-    const double their_build = seconds_of([&] {
-      peer = std::make_unique<EmbreeCurves>(curves, 5, threads);
-    });
+    const double their_build =
+        seconds_of([&] { peer = std::make_unique<EmbreeCurves>(curves, 5, threads); });
     print_build(shape, "embree", "", curves, their_build, peer->byte_count());
     for (const std::string& builder : options.list("builders", "LINEAR,SAH")) {
       std::shared_ptr<const Mesh> mesh;
-      const double build = seconds_of([&] {
-        mesh = Mesh::build(curves.input(), builder_from_name(builder), pool, Cancel());
-      });
+      const double build = seconds_of(
+          [&] { mesh = Mesh::build(curves.input(), builder_from_name(builder), pool, Cancel()); });
       print_build(shape, "komorebi", builder, curves, build, double(mesh->byte_count()));
       Scene scene;
       const InstanceInput instance{scene.add_mesh(mesh), Mat4d(1.0), 0, kMaskAll, 0};
@@ -139,7 +138,8 @@ void curves_part(const Options& options) {
         other += hits[i].primitive != theirs[i].primitive ? 1u : 0u;
       }
       for (std::uint32_t i = 0; i < light.size(); ++i) {
-        const unsigned a = (bits[i / 32] >> (i % 32)) & 1u, b = (their_bits[i / 32] >> (i % 32)) & 1u;
+        const unsigned a = (bits[i / 32] >> (i % 32)) & 1u,
+                       b = (their_bits[i / 32] >> (i % 32)) & 1u;
         blocked += a;
         differing += a != b ? 1 : 0;
       }

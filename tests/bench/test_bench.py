@@ -140,7 +140,18 @@ def test_figures_have_three_significant_digits(value, text):
 
 
 def test_curves_are_traced_beside_embree():
-    words = ["--strands", "300", "--segments", "4", "--width", "0.02", "--size", "16", "--rounds", "2"]
+    words = [
+        "--strands",
+        "300",
+        "--segments",
+        "4",
+        "--width",
+        "0.02",
+        "--size",
+        "16",
+        "--rounds",
+        "2",
+    ]
     rows = core.run_part("curves", words)
     built, traced = curves.tables(rows)
     # Two shapes: two trees and Embree's; from the camera and towards the light on each of ours.

@@ -95,9 +95,9 @@ TEST_P(ClosedForm, ACurveAloneSeesAllOfTheSky) {
       const auto hair = Mesh::build(curve.input(), Builder::kSah, shared_pool(), Cancel());
       const Vec3d place(far, -far, 0.3 * far);
       const Mat4d put = glm::scale(glm::translate(Mat4d(1.0), place), Vec3d(scale));
-      const auto scene = committed(make_scene(
-          {{hair, put}}, camera_at(place + scale * Vec3d(1, -3, 2), place, 48, 32, scale),
-          Vec3(0.5f)));
+      const auto scene = committed(
+          make_scene({{hair, put}},
+                     camera_at(place + scale * Vec3d(1, -3, 2), place, 48, 32, scale), Vec3(0.5f)));
       Settings settings = ao_settings(GetParam());
       settings.samples = 16;
       settings.method = Method::kWorldLight;

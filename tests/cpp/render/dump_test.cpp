@@ -41,11 +41,9 @@ class Dump : public ::testing::Test {
     const auto points =
         Mesh::build(PointsInput{"two", at, radius}, Builder::kLinear, shared_pool(), Cancel());
     const Mat4d there = glm::translate(Mat4d(1.0), Vec3d(4001, 0, 1.5));
-    auto made = make_scene({{ground},
-                            {ball, glm::scale(Mat4d(1.0), Vec3d(1, -1, 1))},
-                            {hair, there},
-                            {points, there}},
-                           camera_at({4005, -4, 3}, {4000, 0, 0.5}, 40, 30));
+    auto made = make_scene(
+        {{ground}, {ball, glm::scale(Mat4d(1.0), Vec3d(1, -1, 1))}, {hair, there}, {points, there}},
+        camera_at({4005, -4, 3}, {4000, 0, 0.5}, 40, 30));
     std::vector<float> texels(3 * 16 * 8, 0.25f);
     texels[100] = 50.0f;
     const Mat3d turn(glm::rotate(Mat4d(1.0), 0.5, Vec3d(0, 0, 1)));

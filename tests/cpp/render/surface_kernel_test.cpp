@@ -25,7 +25,8 @@ std::shared_ptr<Scene> odd_scene() {
   sheared[2][0] = 0.8;
   const Curves flat_hair = made_fur(400, 5, 0.6, 0.04, 2.0, CurveShape::kRibbon);
   const Curves thick_hair = made_fur(400, 5, 0.6, 0.04, 2.0, CurveShape::kThick);
-  const std::vector<float> points = {0, 0, 0, 0.5f, 0.2f, 0, 0, 0.5f, 0.4f}, radii = {0.4f, 0.3f, 0.2f};
+  const std::vector<float> points = {0, 0, 0, 0.5f, 0.2f, 0, 0, 0.5f, 0.4f},
+                           radii = {0.4f, 0.3f, 0.2f};
   const auto ribbons = Mesh::build(flat_hair.input(), Builder::kSah, shared_pool(), Cancel());
   const auto strands = Mesh::build(thick_hair.input(), Builder::kSah, shared_pool(), Cancel());
   const PointsInput three{"three", points, radii};
