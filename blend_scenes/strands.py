@@ -53,7 +53,8 @@ def hair_particles() -> None:
     curly = add_hair(patch, "Curly", 120, 0.6)
     curly.use_hair_bspline, curly.radius_scale, curly.brownian_factor = True, 0.04, 0.08
     bent = add_mesh(
-        "Bent", [(x, y, z) for z in (0.0, 0.5, 1.0) for x, y in ((0, 0), (0.4, 0), (0.4, 0.4), (0, 0.4))],
+        "Bent",
+        [(x, y, z) for z in (0.0, 0.5, 1.0) for x, y in ((0, 0), (0.4, 0), (0.4, 0.4), (0, 0.4))],
         [(4 * r + a, 4 * r + (a + 1) % 4, 4 * r + 4 + (a + 1) % 4, 4 * r + 4 + a)
          for r in range(2) for a in range(4)],
     )  # fmt: skip
