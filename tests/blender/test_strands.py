@@ -21,8 +21,10 @@ def curves_of(data):
 
 
 def exported():
-    """support.exported() with the meshes that the core has been given since."""
-    from komorebi import native_scene
+    """support.exported() with the meshes that the core has been given since, none of them known."""
+    from komorebi import cache, native_scene
+
+    cache.clear()
 
     given, original = [], native_scene.load
 
