@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import bpy
 from common import add_camera, add_mesh, add_sphere, empty_scene, link, set_world
@@ -52,7 +53,8 @@ def hair_particles() -> None:
     curly = add_hair(patch, "Curly", 120, 0.6)
     curly.use_hair_bspline, curly.radius_scale, curly.brownian_factor = True, 0.04, 0.08
     bent = add_mesh(
-        "Bent", [(x, y, z) for z in (0.0, 0.5, 1.0) for x, y in ((0, 0), (0.4, 0), (0.4, 0.4), (0, 0.4))],
+        "Bent",
+        [(x, y, z) for z in (0.0, 0.5, 1.0) for x, y in ((0, 0), (0.4, 0), (0.4, 0.4), (0, 0.4))],
         [(4 * r + a, 4 * r + (a + 1) % 4, 4 * r + 4 + (a + 1) % 4, 4 * r + 4 + a)
          for r in range(2) for a in range(4)],
     )  # fmt: skip
@@ -89,7 +91,7 @@ def node_tree(thing: bpy.types.Object) -> bpy.types.NodeTree:
 def chain(tree: bpy.types.NodeTree, *kinds: str) -> list[bpy.types.Node]:
     """Nodes of these kinds between input and output, each first output into the first input."""
     nodes = [tree.nodes.new(kind) for kind in ("NodeGroupInput", *kinds, "NodeGroupOutput")]
-    for before, after in zip(nodes, nodes[1:], strict=False):
+    for before, after in pairwise(nodes):
         tree.links.new(before.outputs[0], after.inputs[0])
     return nodes[1:-1]
 
@@ -106,7 +108,7 @@ def hair_curves() -> None:
     radius.inputs["Radius"].default_value = 0.006
     ball = add_sphere("Ball", 0.5, (1.2, 0.0, 0.7), level=3)
     tree = node_tree(ball)
-    spread, put, real, radius, join = chain(
+    spread, put, _real, radius, join = chain(
         tree, "GeometryNodeDistributePointsOnFaces", "GeometryNodeInstanceOnPoints",
         "GeometryNodeRealizeInstances", "GeometryNodeSetCurveRadius", "GeometryNodeJoinGeometry",
     )  # fmt: skip

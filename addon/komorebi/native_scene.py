@@ -137,14 +137,15 @@ def _native_mesh(
     cancel: Any,
     same_geometry: Any | None,
 ) -> Any:
+    # Over boxes the better tree takes no longer to build than the quick one.
     if isinstance(mesh, CurveData):
         return core.Mesh.from_curves(
             mesh.name, mesh.positions, mesh.radii, mesh.curve_offsets, shape=mesh.shape,
-            subdivisions=mesh.subdivisions, builder=builder, threads=threads, cancel=cancel,
+            subdivisions=mesh.subdivisions, builder="SAH", threads=threads, cancel=cancel,
         )  # fmt: skip
     if isinstance(mesh, PointData):
         return core.Mesh.from_points(
-            mesh.name, mesh.positions, mesh.radii, builder=builder, threads=threads, cancel=cancel
+            mesh.name, mesh.positions, mesh.radii, builder="SAH", threads=threads, cancel=cancel
         )
     return core.Mesh(
         mesh.name, mesh.positions, mesh.corner_verts, mesh.face_offsets,

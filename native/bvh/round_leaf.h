@@ -8,16 +8,26 @@ namespace komorebi {
 /// Tests one item of a set of curves (CurveItem) or points and keeps the hit if it is the better
 /// one; true if anything was hit. A ray that leaves a curve meets none of its segments, as in
 /// Cycles: on a bent ribbon a point's neighbours would shadow it at random.
-/// @param self  the primitive of this instance that the ray leaves, or kNone
+/// @param self   the primitive of this instance that the ray leaves, or kNone
+/// @param entry  of a curve's segment2key
 bool test_round_item(const MeshView& mesh, const RoundRay& ray, std::uint32_t self,
-                     std::uint32_t instance, std::uint32_t item, Closest* closest);
+                     std::uint32_t instance, std::uint32_t item, std::uint32_t entry,
+                     Closest* closest);
+
+/// The same without a leaf.
+inline bool test_round_item(const MeshView& mesh, const RoundRay& ray, std::uint32_t self,
+                            std::uint32_t instance, std::uint32_t item, Closest* closest) {
+  const bool is_curve = mesh.kind == PrimitiveKind::kCurve;
+  const std::uint32_t entry = is_curve ? mesh.segment2key[item / mesh.segment_parts] : 0;
+  return test_round_item(mesh, ray, self, instance, item, entry, closest);
+}
 
 /// The same with a leaf of the tree.
 inline bool test_round_leaf(const MeshView& mesh, const RoundRay& ray, std::uint32_t self,
                             std::uint32_t instance, std::uint32_t leaf, Closest* closest) {
   const RoundLeaf& its = mesh.leaves[leaf];
   if (misses_leaf(mesh.leaf_grid, its, ray)) return false;
-  return test_round_item(mesh, ray, self, instance, its.item, closest);
+  return test_round_item(mesh, ray, self, instance, its.item, its.entry, closest);
 }
 
 }  // namespace komorebi

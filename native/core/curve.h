@@ -97,9 +97,10 @@ inline Vec4d curve_key(const MeshView& mesh, std::uint32_t key) {
 }
 
 /// The four keys that a segment depends on, handed through `map`.
+/// @param entry  of segment2key
 template <class Map>
-CurveSegment mapped_segment(const MeshView& mesh, std::uint32_t segment, const Map& map) {
-  const std::uint32_t entry = mesh.segment2key[segment], key = entry & kKeyMask;
+CurveSegment mapped_segment(const MeshView& mesh, std::uint32_t entry, const Map& map) {
+  const std::uint32_t key = entry & kKeyMask;
   const Vec4d begin = map(curve_key(mesh, key)), end = map(curve_key(mesh, key + 1));
   const Vec4d before = entry & kFirstOfCurve ? begin : map(curve_key(mesh, key - 1));
   const Vec4d after = entry & kLastOfCurve ? end : map(curve_key(mesh, key + 2));
@@ -108,30 +109,33 @@ CurveSegment mapped_segment(const MeshView& mesh, std::uint32_t segment, const M
 
 }  // namespace detail
 
-inline CurveSegment curve_segment(const MeshView& mesh, std::uint32_t segment) {
-  return detail::mapped_segment(mesh, segment, [](const Vec4d& key) { return key; });
+inline CurveSegment curve_segment(const MeshView& mesh, std::uint32_t entry) {
+  return detail::mapped_segment(mesh, entry, [](const Vec4d& key) { return key; });
 }
 
 /// The segment as `ray` sees it: x and y across, z along.
-inline CurveSegment seen_segment(const MeshView& mesh, std::uint32_t segment, const RoundRay& ray) {
-  return detail::mapped_segment(mesh, segment, [&](const Vec4d& key) {
+inline CurveSegment seen_segment(const MeshView& mesh, std::uint32_t entry, const RoundRay& ray) {
+  return detail::mapped_segment(mesh, entry, [&](const Vec4d& key) {
     return Vec4d{ray.seen(key.at), key.radius};
   });
-}
-
-/// The same for all segments of one curve: which keys lie before those of the segments before it.
-inline std::uint32_t curve_of(const MeshView& mesh, std::uint32_t segment) {
-  return (mesh.segment2key[segment] & kKeyMask) - segment;
 }
 
 /// What a leaf of a set of curves stands for: some pieces of a segment.
 struct CurveItem {
   std::uint32_t segment;
+  std::uint32_t entry;        ///< of segment2key
   std::uint32_t first, last;  ///< pieces [first, last)
+
+  /// The same for all segments of a curve: which keys lie before those of the segments before it.
+  std::uint32_t curve() const { return (entry & kKeyMask) - segment; }
 };
+inline CurveItem curve_item(const MeshView& mesh, std::uint32_t item, std::uint32_t entry) {
+  const std::uint32_t parts = mesh.segment_parts, segment = item / parts;
+  const std::uint32_t part = item - segment * parts;
+  return {segment, entry, mesh.pieces * part / parts, mesh.pieces * (part + 1) / parts};
+}
 inline CurveItem curve_item(const MeshView& mesh, std::uint32_t item) {
-  const std::uint32_t parts = mesh.segment_parts, part = item % parts;
-  return {item / parts, mesh.pieces * part / parts, mesh.pieces * (part + 1) / parts};
+  return curve_item(mesh, item, mesh.segment2key[item / mesh.segment_parts]);
 }
 
 /// Where piece i begins, and piece i − 1 ends.
@@ -141,7 +145,7 @@ inline double piece_begin(const MeshView& mesh, std::uint32_t i) {
 
 /// The padded box of an item, which decides with it and that every box of a tree is a union of.
 inline Aabb curve_bounds(const MeshView& mesh, const CurveItem& item) {
-  const CurveSegment segment = curve_segment(mesh, item.segment);
+  const CurveSegment segment = curve_segment(mesh, item.entry);
   Vec3d lo(1e300), hi(-1e300);
   for (std::uint32_t i = item.first; i <= item.last; ++i) {
     const Vec4d at = segment.point(piece_begin(mesh, i));
@@ -280,7 +284,7 @@ inline bool thick_depth(const Vec4d& at, double* depth) {
 /// The nearest hit of a ray with an item: the specification. `hit` is written if there is one.
 inline bool intersect_curve(const MeshView& mesh, const CurveItem& item, const RoundRay& ray,
                             CurveHit* hit) {
-  const CurveSegment segment = seen_segment(mesh, item.segment, ray);
+  const CurveSegment segment = seen_segment(mesh, item.entry, ray);
   if (detail::misses_hull(segment)) return false;
   const bool is_ribbon = mesh.shape == CurveShape::kRibbon;
   const double step = 1.0 / double(mesh.pieces);

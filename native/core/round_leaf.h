@@ -12,10 +12,12 @@ namespace komorebi {
 /// on a grid over the whole set (MeshView::leaf_grid); the radius is the upper half of a float.
 struct RoundLeaf {
   std::uint32_t item;
+  std::uint32_t
+      entry;  ///< of a curve's segment2key, so that nothing else stands between it and the keys
   std::uint16_t begin[3], end[3];
   std::uint16_t radius;
 };
-static_assert(sizeof(RoundLeaf) == 20);
+static_assert(sizeof(RoundLeaf) == 24);
 
 namespace detail {
 
@@ -74,7 +76,8 @@ inline RoundLeaf make_round_leaf(const MeshView& set, std::uint32_t item) {
     return leaf;
   }
   const CurveItem its = curve_item(set, item);
-  const CurveSegment segment = curve_segment(set, its.segment);
+  leaf.entry = its.entry;
+  const CurveSegment segment = curve_segment(set, its.entry);
   detail::put_on_grid(grid, segment.point(piece_begin(set, its.first)).at, leaf.begin);
   detail::put_on_grid(grid, segment.point(piece_begin(set, its.last)).at, leaf.end);
   const Vec3d a = detail::grid_place(grid, leaf.begin), b = detail::grid_place(grid, leaf.end);

@@ -13,7 +13,7 @@ struct RoundPoint {
 };
 
 inline RoundPoint ribbon_point(const MeshView& mesh, const Hit& hit, const RoundRay& ray) {
-  const CurveSegment seen = seen_segment(mesh, hit.primitive, ray);
+  const CurveSegment seen = seen_segment(mesh, mesh.segment2key[hit.primitive], ray);
   const auto pieces = double(mesh.pieces), u = double(hit.u), v = double(hit.v);
   const auto piece = std::min(static_cast<std::uint32_t>(u * pieces), mesh.pieces - 1);
   const double u0 = piece_begin(mesh, piece), u1 = piece_begin(mesh, piece + 1);
@@ -21,7 +21,7 @@ inline RoundPoint ribbon_point(const MeshView& mesh, const Hit& hit, const Round
   const double depth = z0 + (u - u0) / (u1 - u0) * (z1 - z0);
   const Vec3d to_eye = -ray.z;
   RoundPoint point{ray.origin + depth * ray.z, to_eye};
-  const Vec3d tangent = curve_segment(mesh, hit.primitive).slope(u).at;
+  const Vec3d tangent = curve_segment(mesh, mesh.segment2key[hit.primitive]).slope(u).at;
   const Vec3d across = glm::cross(tangent, to_eye);
   const Vec3d outward = glm::cross(across, tangent);
   const double across_length = std::sqrt(glm::dot(across, across));
@@ -34,11 +34,11 @@ inline RoundPoint ribbon_point(const MeshView& mesh, const Hit& hit, const Round
 
 inline RoundPoint thick_point(const MeshView& mesh, const Hit& hit, const RoundRay& ray) {
   const auto u = double(hit.u);
-  const Vec4d at = seen_segment(mesh, hit.primitive, ray).point(u);
+  const Vec4d at = seen_segment(mesh, mesh.segment2key[hit.primitive], ray).point(u);
   double depth;
   if (!thick_depth(at, &depth)) depth = at.at.z;
   const Vec3d position = ray.origin + depth * ray.z;
-  const Vec3d normal = position - curve_segment(mesh, hit.primitive).point(u).at;
+  const Vec3d normal = position - curve_segment(mesh, mesh.segment2key[hit.primitive]).point(u).at;
   return {position, normal};
 }
 

@@ -204,12 +204,12 @@ Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
            py::arg("same_geometry") = std::shared_ptr<Mesh>())
       .def(
           "rebuilt",
-          [](const Mesh& mesh, const std::string& builder, unsigned threads,
+          [](const Mesh& old, const std::string& builder, unsigned threads,
              const std::shared_ptr<Cancel>& cancel) {
             const Builder kind = builder_from_name(builder);
             const py::gil_scoped_release release;
             return std::const_pointer_cast<Mesh>(
-                mesh.rebuilt(kind, *build_pool(threads), cancel_or_never(cancel)));
+                old.rebuilt(kind, *build_pool(threads), cancel_or_never(cancel)));
           },
           py::arg("builder"), py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
           "The same mesh with a tree by another builder. Raises Cancelled.")

@@ -59,8 +59,7 @@ void put_mesh(ArrayFile& file, const std::string& key, const Mesh& mesh) {
 }
 
 std::shared_ptr<const Mesh> get_round(const ArrayFile& file, const std::string& key,
-                                      double expected_rays, ThreadPool& pool,
-                                      const Cancel& cancel) {
+                                      ThreadPool& pool, const Cancel& cancel) {
   const bool are_curves = file.has(key + "keys");
   const auto origin = file.get<double>(key + "origin", 3);
   const auto points = file.get<float>(key + (are_curves ? "keys" : "points"));
@@ -71,7 +70,7 @@ std::shared_ptr<const Mesh> get_round(const ArrayFile& file, const std::string& 
     }
     radius[i] = points[4 * i + 3];
   }
-  const Builder builder = choose_builder(radius.size(), expected_rays);
+  constexpr Builder builder = Builder::kSah;  // over boxes it takes no longer than another
   const std::string name = file.get_text(key + "name");
   if (!are_curves) return Mesh::build(PointsInput{name, xyz, radius}, builder, pool, cancel);
   const auto offsets = file.get<std::int32_t>(key + "curve_offsets");
@@ -90,7 +89,7 @@ std::shared_ptr<const Mesh> get_round(const ArrayFile& file, const std::string& 
 std::shared_ptr<const Mesh> get_mesh(const ArrayFile& file, const std::string& key,
                                      double expected_rays, ThreadPool& pool, const Cancel& cancel) {
   if (file.has(key + "keys") || file.has(key + "points")) {
-    return get_round(file, key, expected_rays, pool, cancel);
+    return get_round(file, key, pool, cancel);
   }
   const auto origin = file.get<double>(key + "origin", 3);
   auto vtx2xyz = file.get<float>(key + "vtx2xyz");

@@ -58,6 +58,21 @@ RayList light_rays(const RayList& camera, const std::vector<Hit>& hits, std::uin
   return rays;
 }
 
+void print_build(const std::string& shape, const std::string& engine, const std::string& tree,
+                 const Curves& curves, double seconds, double bytes) {
+  const auto strands = double(curves.offsets.size() - 1);
+  JsonRow("curves")
+      .text("kind", "build")
+      .text("shape", shape)
+      .text("engine", engine)
+      .text("tree", tree)
+      .number("strands", strands)
+      .number("segments", double(curves.radius.size()) / strands - 1.0)
+      .number("build_seconds", seconds)
+      .number("bytes", bytes)
+      .print();
+}
+
 }  // namespace
 
 void curves_part(const Options& options) {
@@ -74,23 +89,12 @@ void curves_part(const Options& options) {
     std::unique_ptr<EmbreeCurves> peer;
     const double their_build =
         seconds_of([&] { peer = std::make_unique<EmbreeCurves>(curves, 5, threads); });
-    JsonRow("curves")
-        .text("shape", shape)
-        .text("engine", "embree")
-        .number("build", their_build)
-        .number("megabytes", peer->byte_count() / 1e6)
-        .print();
+    print_build(shape, "embree", "", curves, their_build, peer->byte_count());
     for (const std::string& builder : options.list("builders", "LINEAR,SAH")) {
       std::shared_ptr<const Mesh> mesh;
       const double build = seconds_of(
           [&] { mesh = Mesh::build(curves.input(), builder_from_name(builder), pool, Cancel()); });
-      JsonRow("curves")
-          .text("shape", shape)
-          .text("engine", "komorebi")
-          .text("tree", builder)
-          .number("build", build)
-          .number("megabytes", double(mesh->byte_count()) / 1e6)
-          .print();
+      print_build(shape, "komorebi", builder, curves, build, double(mesh->byte_count()));
       Scene scene;
       const InstanceInput instance{scene.add_mesh(mesh), Mat4d(1.0), 0, kMaskAll, 0};
       scene.add_instances({&instance, 1}, "fur");
@@ -142,16 +146,17 @@ void curves_part(const Options& options) {
       const char* names[] = {"camera", "camera", "light", "light"};
       for (std::size_t k = 0; k < contenders.size(); ++k) {
         const double rays = k < 2 ? double(camera.size()) : double(light.size());
-        const double least = *std::min_element(seconds[k].begin(), seconds[k].end());
+        const bool ours = k % 2 == 0;
         JsonRow("curves")
+            .text("kind", "rays")
             .text("shape", shape)
             .text("rays", names[k])
-            .text("engine", k % 2 ? "embree" : "komorebi")
-            .text("tree", k % 2 ? "" : builder)
+            .text("engine", ours ? "komorebi" : "embree")
+            .text("tree", ours ? builder : "")
+            .text("beside", builder)
             .number("count", rays)
-            .number("million_a_second", rays / least / 1e6)
-            .number("met", k < 2 ? double(met) / rays : double(blocked) / rays)
-            .number("differing", k < 2 ? double(other) / rays : double(differing) / rays)
+            .number("met_share", double(k < 2 ? met : blocked) / rays)
+            .number("differing_share", double(k < 2 ? other : differing) / rays)
             .numbers("seconds", seconds[k])
             .print();
       }

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench import core, meshes, ray_tables, scale
+from bench import core, curves, meshes, ray_tables, scale
 from bench.meshes import Mesh, read_glb, read_ply, write_ply
 from bench.tables import Table, figure
 
@@ -137,3 +137,25 @@ def test_tables_keep_their_columns():
 def test_figures_have_three_significant_digits(value, text):
     assert figure(value) == text
     assert math.isfinite(value)
+
+
+def test_curves_are_traced_beside_embree():
+    words = [
+        "--strands",
+        "300",
+        "--segments",
+        "4",
+        "--width",
+        "0.02",
+        "--size",
+        "16",
+        "--rounds",
+        "2",
+    ]
+    rows = core.run_part("curves", words)
+    built, traced = curves.tables(rows)
+    # Two shapes: two trees and Embree's; from the camera and towards the light on each of ours.
+    assert (len(built.rows), len(traced.rows)) == (6, 8)
+    for row in core.pick(rows, kind="rays"):
+        assert row["met_share"] > 0.05
+        assert row["differing_share"] < 0.02

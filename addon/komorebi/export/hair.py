@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from array import array
 from typing import Any
 
 import numpy as np
@@ -70,14 +70,11 @@ def _export_system(obj: Any, system: Any) -> tuple[FloatArray, FloatArray, IntAr
 def _world_positions(obj: Any, system: Any, strands: range, keys: int) -> FloatArray:
     """[strands, keys, 3]. A key that a strand has not got is the one before it."""
     co_hair = system.co_hair
-
-    def numbers() -> Iterator[float]:
-        for strand in strands:
-            for step in range(keys):
-                yield from co_hair(object=obj, particle_no=strand, step=step)
-
-    count = len(strands) * keys * 3
-    world = np.fromiter(numbers(), np.float32, count).reshape(len(strands), keys, 3)
+    numbers = array("f")
+    for strand in strands:
+        for step in range(keys):
+            numbers.extend(co_hair(object=obj, particle_no=strand, step=step)[:])
+    world = np.frombuffer(numbers, np.float32).reshape(len(strands), keys, 3).copy()
     for step in range(1, keys):
         missing = ~world[:, step].any(axis=1)
         world[missing, step] = world[missing, step - 1]

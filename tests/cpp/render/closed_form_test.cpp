@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "support/made_curves.h"
 #include "support/scenes.h"
 
 namespace komorebi::testing {
@@ -45,6 +48,68 @@ TEST_P(ClosedForm, PlaneBesideTangentSphere) {
         committed(make_scene({{ball}, {plane}}, probe_at({r, 0, 0}, {0, 0, 1}, 1e-3)));
     // The polyhedron's silhouette lies within the sphere's: its share is smaller by about 4e-4.
     expect_value(scene, ao_settings(GetParam()), 1.0 - 1.0 / (d * d * d), 1e-3 / (d * d * d));
+  }
+}
+
+TEST_P(ClosedForm, PlaneBesideTangentSphereThatIsAPoint) {
+  const std::vector<float> at = {0, 0, 1}, radius = {1};
+  const auto ball =
+      Mesh::build(PointsInput{"ball", at, radius}, Builder::kSah, shared_pool(), Cancel());
+  const auto plane = quad({-10, -10, 0}, {20, 0, 0}, {0, 20, 0}).mesh();
+  for (const double r : {1.0, 2.0, 5.0}) {
+    const double d = std::sqrt(1.0 + r * r);
+    const auto scene =
+        committed(make_scene({{ball}, {plane}}, probe_at({r, 0, 0}, {0, 0, 1}, 1e-3)));
+    expect_value(scene, ao_settings(GetParam()), 1.0 - 1.0 / (d * d * d), 1e-5);
+  }
+}
+
+TEST_P(ClosedForm, PlaneUnderALongCurve) {
+  // Right under a long horizontal cylinder of radius r, its axis at height h, the plane loses r / h
+  // of its light; a ribbon, which turns to every ray, covers the same.
+  for (const CurveShape shape : {CurveShape::kRibbon, CurveShape::kThick}) {
+    Curves curve;
+    curve.shape = shape;
+    for (int k = -20; k <= 20; ++k) curve.key({20.0 * k, 0, 1}, 0.25);
+    curve.end_curve();
+    const auto hair = Mesh::build(curve.input(), Builder::kSah, shared_pool(), Cancel());
+    const auto plane = quad({-10, -10, 0}, {20, 0, 0}, {0, 20, 0}).mesh();
+    // The camera is under the curve.
+    CameraDesc probe = probe_at({0.3, 0, 0}, {0, 0, 1}, 1e-3);
+    probe.clip_start = 0.6;
+    probe.clip_from_world = glm::ortho(-1e-3, 1e-3, -1e-3, 1e-3, 0.6, 1.5) *
+                            glm::lookAt(Vec3d(0.3, 0, 1), Vec3d(0.3, 0, 0), Vec3d(0, 1, 0));
+    const auto scene = committed(make_scene({{hair}, {plane}}, probe));
+    expect_value(scene, ao_settings(GetParam()), 0.75, 1e-5);
+  }
+}
+
+TEST_P(ClosedForm, ACurveAloneSeesAllOfTheSky) {
+  // A straight curve shadows none of its own surface, at any scale and 10 km from the origin.
+  for (const CurveShape shape : {CurveShape::kRibbon, CurveShape::kThick}) {
+    for (const auto& [scale, far] : {std::pair{1.0, 0.0}, {1e-4, 0.0}, {1.0, 1e4}}) {
+      Curves curve;
+      curve.shape = shape;
+      for (int k = 0; k < 6; ++k) curve.key(Vec3d(0.3 * k - 0.75, 0, 0.1 * k), 0.1);
+      curve.end_curve();
+      const auto hair = Mesh::build(curve.input(), Builder::kSah, shared_pool(), Cancel());
+      const Vec3d place(far, -far, 0.3 * far);
+      const Mat4d put = glm::scale(glm::translate(Mat4d(1.0), place), Vec3d(scale));
+      const auto scene = committed(
+          make_scene({{hair, put}},
+                     camera_at(place + scale * Vec3d(1, -3, 2), place, 48, 32, scale), Vec3(0.5f)));
+      Settings settings = ao_settings(GetParam());
+      settings.samples = 16;
+      settings.method = Method::kWorldLight;
+      settings.environment_sampling = EnvironmentSampling::kCosine;
+      settings.clay_color = Vec3(1.0f);
+      const std::vector<float> rgba = render(scene, settings);
+      for (std::size_t i = 0; i < rgba.size(); i += 4) {
+        ASSERT_NEAR(rgba[i], 0.5f, 1e-5f) << i / 4 << ", scale " << scale << ", far " << far;
+      }
+      const std::vector<float> depth = render(scene, settings, "Depth");
+      EXPECT_GT(std::count_if(depth.begin(), depth.end(), [](float d) { return d < 1e9f; }), 60);
+    }
   }
 }
 

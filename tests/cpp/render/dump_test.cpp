@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "io/array_file.h"
+#include "support/made_curves.h"
 #include "support/scenes.h"
 
 namespace komorebi::testing {
@@ -27,8 +28,22 @@ class Dump : public ::testing::Test {
   static std::shared_ptr<Scene> scene() {
     const auto ball = sphere(12, {4000, 0, 1}, 1.0, true).mesh();
     const auto ground = quad({3990, -9, 0}, {20, 0, 0}, {0, 18, 0}).mesh();
-    auto made = make_scene({{ground}, {ball, glm::scale(Mat4d(1.0), Vec3d(1, -1, 1))}},
-                           camera_at({4005, -4, 3}, {4000, 0, 0.5}, 40, 30));
+    Curves fur = made_fur(30, 3, 0.5, 0.02, 2.0, CurveShape::kThick);
+    for (int alone = 0; alone < 2; ++alone) {  // curves of one key are kept, though not drawn
+      fur.key({0, 0, 0}, 0.1);
+      fur.end_curve();
+    }
+    fur.shape = CurveShape::kRibbon;
+    CurvesInput input = fur.input("fur");
+    input.subdivisions = 1;
+    const auto hair = Mesh::build(input, Builder::kLinear, shared_pool(), Cancel());
+    const std::vector<float> at = {0, 0, 0, 1, 0, 0}, radius = {0.2f, 0.1f};
+    const auto points =
+        Mesh::build(PointsInput{"two", at, radius}, Builder::kLinear, shared_pool(), Cancel());
+    const Mat4d there = glm::translate(Mat4d(1.0), Vec3d(4001, 0, 1.5));
+    auto made = make_scene(
+        {{ground}, {ball, glm::scale(Mat4d(1.0), Vec3d(1, -1, 1))}, {hair, there}, {points, there}},
+        camera_at({4005, -4, 3}, {4000, 0, 0.5}, 40, 30));
     std::vector<float> texels(3 * 16 * 8, 0.25f);
     texels[100] = 50.0f;
     const Mat3d turn(glm::rotate(Mat4d(1.0), 0.5, Vec3d(0, 0, 1)));

@@ -9,6 +9,7 @@
 #include "render/one_ray.h"
 #include "render/ray_batch.h"
 #include "render/surface_batch.h"
+#include "support/made_curves.h"
 #include "support/scenes.h"
 
 namespace komorebi::testing {
@@ -22,6 +23,14 @@ std::shared_ptr<Scene> odd_scene() {
   };
   Mat4d sheared = put(-2, 1, 1, Vec3d(1));
   sheared[2][0] = 0.8;
+  const Curves flat_hair = made_fur(400, 5, 0.6, 0.04, 2.0, CurveShape::kRibbon);
+  const Curves thick_hair = made_fur(400, 5, 0.6, 0.04, 2.0, CurveShape::kThick);
+  const std::vector<float> points = {0, 0, 0, 0.5f, 0.2f, 0, 0, 0.5f, 0.4f},
+                           radii = {0.4f, 0.3f, 0.2f};
+  const auto ribbons = Mesh::build(flat_hair.input(), Builder::kSah, shared_pool(), Cancel());
+  const auto strands = Mesh::build(thick_hair.input(), Builder::kSah, shared_pool(), Cancel());
+  const PointsInput three{"three", points, radii};
+  const auto balls = Mesh::build(three, Builder::kSah, shared_pool(), Cancel());
   Polygons sliver;  // one of these triangles has no area, the other hardly any
   for (const Vec3d& p : {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(2, 0, 0), Vec3d(1, 1e-6, 0.5)}) {
     sliver.vertex(p);
@@ -35,7 +44,11 @@ std::shared_ptr<Scene> odd_scene() {
                      {flat, put(1, -2, 1, Vec3d(0.7, 0.7, 0))},
                      {flat, put(0, 3, 1, Vec3d(1e-4))},
                      {smooth, put(0, 700, 60, Vec3d(300))},
-                     {sliver.mesh(), put(-1, -2, 0.5, Vec3d(2))}},
+                     {sliver.mesh(), put(-1, -2, 0.5, Vec3d(2))},
+                     {ribbons, put(-1.5, -1, 0.4, Vec3d(0.4, 0.3, -0.3))},
+                     {strands, put(3, -1, 0.4, Vec3d(0.3))},
+                     {balls, put(1.8, -2.2, 0.9, Vec3d(0.5, 0.5, 0.2))},
+                     {balls, put(1.5, -3.0, 0.4, Vec3d(0.5, 0.5, 0))}},
                     camera_at({4, -6, 3}, {0, 0, 0.8}, 160, 100));
 }
 
@@ -76,8 +89,8 @@ void expect_equal_to_surface_point(const std::shared_ptr<Scene>& scene, std::ptr
 }
 
 TEST(SurfaceKernel, EqualsSurfacePoint) {
-  // All but the tiny one are in the picture.
-  expect_equal_to_surface_point(committed(odd_scene()), 7);
+  // All but the tiny one and the points without volume are in the picture.
+  expect_equal_to_surface_point(committed(odd_scene()), 10);
 }
 
 TEST(SurfaceKernel, DepthOfAPanoramaIsEqualToo) {
