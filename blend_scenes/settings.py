@@ -145,7 +145,44 @@ def far_away() -> None:
     scaled(1.0, 1e4)
 
 
+def shadow_terminator() -> None:
+    """Coarse smooth balls in low sunlight, each with other shadow terminator offsets; one is
+    larger and mirrored."""
+    empty_scene(320, 160)
+    add_rectangle("Floor", (-6.0, -6.0, 0.0), (12.0, 0.0, 0.0), (0.0, 12.0, 0.0))
+    kinds = (
+        (0.1, 0.0, (1.0, 1.0, 1.0)), (0.0, 0.0, (1.0, 1.0, 1.0)), (0.6, 0.0, (1.0, 1.0, 1.0)),
+        (0.0, 0.7, (1.0, 1.0, 1.0)), (0.1, 0.2, (-1.2, 1.2, 1.2)),
+    )  # fmt: skip
+    for i, (geometry, shading, scale) in enumerate(kinds):
+        bpy.ops.mesh.primitive_uv_sphere_add(
+            segments=10, ring_count=6, radius=0.55, location=(1.3 * (i - 2), 0.0, 0.9)
+        )
+        ball = bpy.context.object
+        ball.scale = scale
+        ball.data.polygons.foreach_set("use_smooth", [True] * len(ball.data.polygons))
+        ball.cycles.shadow_terminator_geometry_offset = geometry
+        ball.cycles.shadow_terminator_offset = shading
+    world, width, height = set_world(), 64, 32
+    image = bpy.data.images.new("Low sun", width, height, float_buffer=True)
+    sky = [0.2, 0.3, 0.4, 1.0]
+    image.pixels.foreach_set(
+        [
+            value
+            for row in range(height)
+            for column in range(width)
+            for value in ([150.0, 130.0, 100.0, 1.0] if (row, column) == (19, 40) else sky)
+        ]
+    )
+    image.pack()
+    nodes, links = world.node_tree.nodes, world.node_tree.links
+    texture = nodes.new("ShaderNodeTexEnvironment")
+    texture.image = image
+    links.new(texture.outputs["Color"], nodes["Background"].inputs["Color"])
+    add_camera((0.0, -6.0, 2.4), (0.0, 0.0, 0.8), lens=36.0)
+
+
 SCENES: dict[str, Callable[[], None]] = {
     scene.__name__: scene
-    for scene in (shading, view_layers, border, orthographic, tiny, huge, far_away)
+    for scene in (shading, view_layers, border, orthographic, tiny, huge, far_away, shadow_terminator)
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/math.h"
-#include "core/scene_view.h"
+#include "core/surface_point.h"
 
 namespace komorebi {
 
@@ -41,18 +41,19 @@ inline Vec3 smooth_lift(const InstanceView& instance, const MeshView& mesh, cons
   const bool smooth = mesh.kind == PrimitiveKind::kTriangle && mesh.normals &&
                       (!mesh.tri2smooth || mesh.tri2smooth[hit.primitive]);
   if (!smooth) return Vec3(0.0f);
+  // In the world's lengths and angles: a stretched object's surface is bent otherwise.
+  const Mat3 normal_transform = glm::transpose(instance.local_from_world);
   Vec3 corner[3], normal[3];
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t at = 3 * std::size_t{hit.primitive} + k;
     const float* p = mesh.vtx2xyz + 3 * std::size_t{mesh.tri2vtx[at]};
     const float* n = mesh.normals + 3 * std::size_t{mesh.tri2normal[at]};
-    corner[k] = Vec3(p[0], p[1], p[2]);
-    normal[k] = Vec3(n[0], n[1], n[2]);
+    corner[k] = instance.world_from_local * Vec3(p[0], p[1], p[2]);
+    normal[k] = detail::unit_or(normal_transform * Vec3(n[0], n[1], n[2]), geometric_normal);
   }
   const float v = hit.u, w = hit.v, u = 1.0f - v - w;
   const Vec3 at = u * corner[0] + v * corner[1] + w * corner[2];
   const Vec3 up = u * normal[0] + v * normal[1] + w * normal[2];
-  const Vec3 world_up = instance.world_from_local * up;  // as long as the object is stretched
 
   // The height of a paraboloid through the corners with about these normals.
   const float bend_u = glm::dot(normal[2] - normal[0], corner[0] - corner[2]);
@@ -60,9 +61,9 @@ inline Vec3 smooth_lift(const InstanceView& instance, const MeshView& mesh, cons
   const float bend_uv = glm::dot(normal[1] - normal[0], corner[1] - corner[0]);
   const float height =
       bend_u * u * (u - 1.0f) + (bend_u + bend_v + bend_uv) * u * v + bend_v * v * (v - 1.0f);
-  const bool outer = glm::dot(world_up, geometric_normal) > 0.0f;
+  const bool outer = glm::dot(up, geometric_normal) > 0.0f;
   const float reach = detail::convex_reach(corner, normal, at, outer ? 1.0f : -1.0f);
-  return world_up * (outer ? glm::max(reach, 0.5f * height) : glm::min(-reach, 0.5f * height));
+  return up * (outer ? glm::max(reach, 0.5f * height) : glm::min(-reach, 0.5f * height));
 }
 
 /// Which part of the lift a ray starts at: all of it where it grazes, none from the cutoff on.

@@ -26,6 +26,20 @@ def lamps_off() -> list[str]:
     return [f"{len(bpy.data.lights)} lamps"] if bpy.data.lights else []
 
 
+def terminators_off() -> None:
+    """Shadow-terminator offsets 0: Cycles ignores that of the geometry under an even sky, but
+    ambient occlusion heeds it, as Cycles' own does."""
+    for thing in bpy.data.objects:
+        settle_all(
+            getattr(thing, "cycles", None),
+            shadow_terminator_offset=0.0,
+            shadow_terminator_geometry_offset=0.0,
+        )
+        settle_all(
+            thing, shadow_terminator_geometry_offset=0.0, shadow_terminator_shading_offset=0.0
+        )
+
+
 def visible_alike() -> list[str]:
     """Makes visibility to shadow and diffuse rays the same where the engines ask different ones.
 
@@ -41,21 +55,12 @@ def visible_alike() -> list[str]:
 
 
 def objects_off() -> list[str]:
-    """Hide objects of kinds that Komorebi lacks; shadow-terminator offsets 0
-    everywhere."""
+    """Hide objects of kinds that Komorebi lacks."""
     found: Counter[str] = Counter()
     for thing in bpy.data.objects:
         if thing.type in KINDS:
             settle(thing, "hide_render", True)
             found[f"{KINDS[thing.type]} objects"] += 1
-        settle_all(
-            getattr(thing, "cycles", None),
-            shadow_terminator_offset=0.0,
-            shadow_terminator_geometry_offset=0.0,
-        )
-        settle_all(
-            thing, shadow_terminator_geometry_offset=0.0, shadow_terminator_shading_offset=0.0
-        )
         settle_all(getattr(thing, "cycles", None), use_camera_cull=False, use_distance_cull=False)
     return [f"{count} {name}" for name, count in sorted(found.items())]
 

@@ -39,6 +39,8 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
     notes += more + objects.lamps_off() + objects.objects_off()
     layer.material_override = engines.clay(job["mode"], job["flat"])
     notes += world.set_world(scene, job["mode"], job["world_image"])
+    if job["mode"] == "ao":
+        objects.terminators_off()
     if job["mode"] == "ao" or not world.is_even(scene.world):
         notes += objects.visible_alike()
     scene.frame_set(scene.frame_current)  # the camera bound to a marker, and all drivers
