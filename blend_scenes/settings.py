@@ -184,5 +184,14 @@ def shadow_terminator() -> None:
 
 SCENES: dict[str, Callable[[], None]] = {
     scene.__name__: scene
-    for scene in (shading, view_layers, border, orthographic, tiny, huge, far_away, shadow_terminator)
+    for scene in (
+        shading,
+        view_layers,
+        border,
+        orthographic,
+        tiny,
+        huge,
+        far_away,
+        shadow_terminator,
+    )
 }

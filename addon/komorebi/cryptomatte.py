@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Iterable
+from functools import lru_cache
 
 _MASK = 0xFFFFFFFF
 
@@ -29,6 +30,7 @@ def _rotate(value: int, bits: int) -> int:
     return (value << bits | value >> (32 - bits)) & _MASK
 
 
+@lru_cache(maxsize=1 << 16)
 def name_id(name: str) -> int:
     """The bits of the float that stands for a name: the hash, but no NaN, infinity or denormal."""
     hashed = murmur3(name.encode("utf-8", "surrogateescape"))

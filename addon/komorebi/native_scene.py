@@ -116,6 +116,8 @@ def _mesh(core: Any, mesh: AnyMesh, builder: str, threads: int, cancel: Any) -> 
     """The core's mesh of a shape; its entry in the cache is brought up to date."""
     key = _key(mesh)
     known = cache.get(key.geometry, KnownMesh)
+    if isinstance(mesh, CurveData | PointData):
+        builder = "SAH"  # rays among hair cost so much that the better tree always pays
     better = builder == "SAH" and known.builder != "SAH"  # a better tree is wanted than is there
     if isinstance(mesh, KnownShape):
         known.mesh = mesh.mesh.rebuilt(builder, threads, cancel) if better else mesh.mesh
@@ -137,15 +139,14 @@ def _native_mesh(
     cancel: Any,
     same_geometry: Any | None,
 ) -> Any:
-    # Over boxes the better tree takes no longer to build than the quick one.
     if isinstance(mesh, CurveData):
         return core.Mesh.from_curves(
             mesh.name, mesh.positions, mesh.radii, mesh.curve_offsets, shape=mesh.shape,
-            subdivisions=mesh.subdivisions, builder="SAH", threads=threads, cancel=cancel,
+            subdivisions=mesh.subdivisions, builder=builder, threads=threads, cancel=cancel,
         )  # fmt: skip
     if isinstance(mesh, PointData):
         return core.Mesh.from_points(
-            mesh.name, mesh.positions, mesh.radii, builder="SAH", threads=threads, cancel=cancel
+            mesh.name, mesh.positions, mesh.radii, builder=builder, threads=threads, cancel=cancel
         )
     return core.Mesh(
         mesh.name, mesh.positions, mesh.corner_verts, mesh.face_offsets,

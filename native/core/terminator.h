@@ -6,8 +6,8 @@
 namespace komorebi {
 
 /// What keeps coarse smooth meshes from shadowing themselves in facets where light grazes them, as
-/// Cycles does it (intern/cycles/kernel/light/sample.h and kernel/closure/bsdf.h, release 3.4): rays
-/// that graze leave a point above the flat triangle, and the cosine's last part is cut off.
+/// Cycles does it (intern/cycles/kernel/light/sample.h and kernel/closure/bsdf.h, release 3.4):
+/// rays that graze leave a point above the flat triangle, and the cosine's last part is cut off.
 struct Terminator {
   Vec3 lift{0.0f};         ///< world space: from the triangle to about the smooth surface
   float cutoff = 0.0f;     ///< cosine below which rays are lifted; 0: none

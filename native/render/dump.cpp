@@ -70,7 +70,7 @@ std::shared_ptr<const Mesh> get_round(const ArrayFile& file, const std::string& 
     }
     radius[i] = points[4 * i + 3];
   }
-  constexpr Builder builder = Builder::kSah;  // over boxes it takes no longer than another
+  constexpr Builder builder = Builder::kSah;  // as the add-on builds them
   const std::string name = file.get_text(key + "name");
   if (!are_curves) return Mesh::build(PointsInput{name, xyz, radius}, builder, pool, cancel);
   const auto offsets = file.get<std::int32_t>(key + "curve_offsets");
