@@ -108,7 +108,15 @@ def main() -> None:
             raise RuntimeError("the add-on komorebi could not be enabled")
     notes = open_file(job["file"])
     longest = max(job["width"], job["height"])
-    common = {"frame": None, "view_layer": None, "flat": False, "samples": 1, "longest": longest}
+    common = {
+        "frame": None,
+        "camera": None,
+        "stereo": None,
+        "view_layer": None,
+        "flat": False,
+        "samples": 1,
+        "longest": longest,
+    }
     scene, layer, more = prepare({**common, **job})
     settle_all(scene.render, resolution_x=job["width"], resolution_y=job["height"])
     if job["engine"] == "CYCLES":
