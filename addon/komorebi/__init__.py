@@ -10,7 +10,7 @@ import atexit
 
 import bpy
 
-from . import cache, engine, jobs, operators, preferences, properties, ui
+from . import engine, jobs, keeping, operators, preferences, properties, ui
 
 bl_info = {
     "name": "Komorebi",
@@ -22,7 +22,7 @@ bl_info = {
     "category": "Render",
 }
 
-_MODULES = (preferences, properties, engine, operators, ui, jobs, cache)
+_MODULES = (preferences, properties, engine, operators, ui, jobs, keeping)
 _registered = False
 
 

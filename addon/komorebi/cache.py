@@ -2,9 +2,10 @@
 
 A key is a digest of everything that the object was made from, so an entry can be old but never
 wrong. Entries that two frames in a row did not use go, and before new ones are made so do the
-longest unused ones beyond the limit. All go when a file is loaded and when the add-on is switched
-off. After a render in a window they stay only if Persistent Data asks for it; in background the
-next render of a batch finds them, unless they are beyond the limit.
+longest unused ones beyond the limit. All go when a file is loaded and when the add-on, the engine
+or Persistent Data is switched off (`keeping.py`). After a render in a window they stay only if
+Persistent Data asks for it; in background the next render of a batch finds them, unless they are
+beyond the limit.
 """
 
 from __future__ import annotations
@@ -77,11 +78,3 @@ def entry_count() -> int:
 
 def clear() -> None:
     _entries.clear()
-
-
-def register() -> None:
-    clear()
-
-
-def unregister() -> None:
-    clear()

@@ -16,6 +16,11 @@ from . import cache, discard, reporting
 _stack: list[Any] = []
 
 
+def is_running() -> bool:
+    """True from the start of a job to its end, whatever engine renders it."""
+    return bool(_stack)
+
+
 def is_nested(scene: Any) -> bool:
     """True when `scene` is rendered on behalf of another scene, which ignores its reports."""
     return len(_stack) > 1 or (bool(_stack) and _stack[-1] != scene)
@@ -45,18 +50,16 @@ def _on_write(scene: Any, *_: Any) -> None:
 
 
 @persistent
-def _on_end(scene: Any, *_: Any) -> None:
+def _on_end(*_: Any) -> None:
     if _stack:
         _stack.pop()
     if not _stack:
         reporting.end()
-        cache.end_job(keep=bpy.app.background or scene.render.use_persistent_data)
 
 
 @persistent
 def _on_load(*_: Any) -> None:
     _stack.clear()
-    cache.clear()
 
 
 _HANDLERS = (

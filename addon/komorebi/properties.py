@@ -1,8 +1,6 @@
 # mypy: disable-error-code="valid-type,attr-defined,func-returns-value"
 """The settings of a scene, `scene.komorebi`. Scripts rely on these names and defaults."""
 
-from typing import Any
-
 import bpy
 from bpy.props import (
     BoolProperty,
@@ -12,6 +10,8 @@ from bpy.props import (
     IntProperty,
     PointerProperty,
 )
+
+from .callbacks import update_render_passes
 
 METHODS = (
     ("AMBIENT_OCCLUSION", "Ambient Occlusion", "How much of a white sky each point sees"),
@@ -32,12 +32,6 @@ PIXEL_FILTERS = (
     ("GAUSSIAN", "Gaussian", "Smoother"),
     ("BOX", "Box", "Each pixel by itself"),
 )
-
-
-def _update_render_passes(_: Any, context: Any) -> None:
-    """Lets the compositor's sockets follow a pass that is switched on or off."""
-    if context.view_layer is not None:
-        context.view_layer.update_render_passes()
 
 
 class KomorebiSceneSettings(bpy.types.PropertyGroup):
@@ -100,7 +94,7 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         name="Use Denoising",
         description="Denoise the picture with Open Image Denoise, guided by albedo and normal; "
         "the pass Noisy Image keeps it as it was",
-        default=False, update=_update_render_passes,
+        default=False, update=update_render_passes,
     )  # fmt: skip
     ao_distance: FloatProperty(
         name="Distance", description="How far away things still darken a point; 0 is any distance",
@@ -139,34 +133,34 @@ class KomorebiViewLayerSettings(bpy.types.PropertyGroup):
     pass_debug_sample_count: BoolProperty(
         name="Debug Sample Count",
         description="Camera samples of each pixel, as a fraction of the most that it may have",
-        default=False, update=_update_render_passes,
+        default=False, update=update_render_passes,
     )  # fmt: skip
     use_pass_instance_index: BoolProperty(
         name="Instance Index", description="Another number for each instance, from 1 on",
-        default=False, update=_update_render_passes,
+        default=False, update=update_render_passes,
     )  # fmt: skip
     use_pass_variance: BoolProperty(
         name="Variance", description="Variance of the samples of each pixel",
-        default=False, update=_update_render_passes,
+        default=False, update=update_render_passes,
     )  # fmt: skip
     use_pass_sky_visibility: BoolProperty(
         name="Sky Visibility",
         description="How much of a white sky each point sees, however far away what hides it is",
-        default=False, update=_update_render_passes,
+        default=False, update=update_render_passes,
     )  # fmt: skip
     use_pass_bent_normal: BoolProperty(
         name="Bent Normal", description="Direction from which most light of a white sky comes",
-        default=False, update=_update_render_passes,
+        default=False, update=update_render_passes,
     )  # fmt: skip
     # Cycles has these two of its own, which count where it is enabled.
     denoising_store_passes: BoolProperty(
         name="Denoising Data", description="Normal, albedo and depth for the compositor's denoiser",
-        default=False, update=_update_render_passes,
+        default=False, update=update_render_passes,
     )  # fmt: skip
     use_pass_shadow_catcher: BoolProperty(
         name="Shadow Catcher",
         description="How much light things take from shadow catchers, to multiply a picture by",
-        default=False, update=_update_render_passes,
+        default=False, update=update_render_passes,
     )  # fmt: skip
 
 

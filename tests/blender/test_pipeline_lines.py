@@ -35,6 +35,16 @@ pencil.scale = (2, 2, 2)
 pencil.show_in_front = False
 """
 
+INSTANCE = GREASE_PENCIL + """
+(before,) = pencil.users_collection
+before.objects.unlink(pencil)
+stock = bpy.data.collections.new("Stock")
+stock.objects.link(pencil)
+pencil.location = (0, 0, 0)
+empty = support.add_object("Empty", None, {location})
+empty.instance_type, empty.instance_collection = "COLLECTION", stock
+"""
+
 
 def drawn(folder, change):
     """The picture without and with the lines."""
@@ -44,6 +54,7 @@ def drawn(folder, change):
     if "EGL" in done.output and "RENDERED" not in done.output and done.code in (-6, -11):
         raise support.Skip("Blender has no GPU context here, not even in software")
     assert done.code == 0 and "RENDERED" in done.output, done
+    assert "not rendered yet" not in done.output, done
     return support.read(folder / "plain.exr"), support.read(folder / "lines.exr")
 
 
@@ -59,9 +70,9 @@ def test_freestyle_lines_are_drawn_by_eevee(folder):
     assert (changed & rim).sum() > 0.5 * rim.sum(), ((changed & rim).sum(), rim.sum())
 
 
-def grease_pencil(folder, location):
+def grease_pencil(folder, location, change=GREASE_PENCIL):
     """The picture, and where a grease pencil stroke at `location` changes it."""
-    plain, lines = drawn(folder, GREASE_PENCIL.format(location=location))
+    plain, lines = drawn(folder, change.format(location=location))
     return plain, np.abs(lines - plain).max(2) > 0.05
 
 
@@ -78,3 +89,9 @@ def test_grease_pencil_is_hidden_by_what_is_before_it(folder):
     for axis in (0, 1):  # its outline is smoothed by both
         cube &= np.roll(cube, 1, axis) & np.roll(cube, -1, axis)
     assert cube.sum() > 100 and not (changed & cube).any()
+
+
+def test_instances_of_grease_pencil_are_drawn_too(folder):
+    _, stroke = grease_pencil(folder, (1, -1, 1))
+    _, instance = grease_pencil(folder, (1, -1, 1), INSTANCE)
+    assert np.array_equal(stroke, instance)

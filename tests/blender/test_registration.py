@@ -97,3 +97,25 @@ def test_works_without_cycles(folder):
         folder,
     )
     assert done.code == 0 and support.pictures(folder) == ["picture.png"], done
+
+
+def test_callbacks_of_properties_keep_nothing_alive():
+    """What they know lives to the end of the process; a `bpy` module up to 4.2 crashes there."""
+    import types
+
+    from komorebi import properties
+
+    found = set()
+    for group in (properties.KomorebiSceneSettings, properties.KomorebiViewLayerSettings):
+        for declared in group.__annotations__.values():
+            found |= {v for v in declared.keywords.values() if isinstance(v, types.FunctionType)}
+    assert found, "properties have callbacks, and keywords tell them"
+    for function in found:
+        known = [k for k in function.__globals__ if not k.startswith("__")]
+        assert known == ["update_render_passes"], f"{function.__module__} knows {known}"
+
+
+def test_a_process_ends_in_success(folder):
+    for text in ("", "import bpy\nsupport.small(bpy.context.scene)\nbpy.ops.render.render()\n"):
+        done = support.script(text, folder)
+        assert done.code == 0, done

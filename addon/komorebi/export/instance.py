@@ -18,9 +18,7 @@ from .shapes import NONE, TYPES, ShapeExporter
 from .visibility import Visibility
 from .wanted import Wanted
 
-UNSUPPORTED_TYPES = {
-    "VOLUME": "a volume", "GPENCIL": "grease pencil", "GREASEPENCIL": "grease pencil",
-}  # fmt: skip
+UNSUPPORTED_TYPES = {"VOLUME": "a volume"}  # grease pencil is drawn by Blender, over the picture
 CANCEL_INTERVAL = 256  # instances between two looks at whether Blender wants to stop
 
 

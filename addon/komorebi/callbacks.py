@@ -1,0 +1,12 @@
+"""What Blender calls when a property changes.
+
+Not beside the properties: up to 4.2 Python's garbage collector does not see into a property of a
+class, so that a callback whose module knows the class, or bpy, keeps both alive to the end. Blender
+as a Python module then crashes there. So nothing is imported here.
+"""
+
+
+def update_render_passes(_: object, context) -> None:  # type: ignore[no-untyped-def]
+    """Lets the compositor's sockets follow a pass that is switched on or off."""
+    if context.view_layer is not None:
+        context.view_layer.update_render_passes()
