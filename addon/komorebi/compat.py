@@ -215,11 +215,30 @@ def is_deferred(obj: Any) -> bool:
     return not bpy.app.background and len(modifiers) > 0 and modifiers[-1].type == "SUBSURF"
 
 
+def has_adaptive_subdivision(scene: Any, obj: Any) -> bool:
+    """Whether Cycles would subdivide an object by its size in the picture."""
+    modifiers = obj.modifiers
+    if not len(modifiers) or modifiers[-1].type != "SUBSURF" or not modifiers[-1].show_render:
+        return False
+    if hasattr(modifiers[-1], "use_adaptive_subdivision"):  # from 5.0
+        return bool(modifiers[-1].use_adaptive_subdivision)
+    if getattr(cycles_or(scene, None), "feature_set", "") != "EXPERIMENTAL":
+        return False
+    return bool(getattr(cycles_or(obj, None), "use_adaptive_subdivision", False))
+
+
 def world_nodes(world: Any) -> Any | None:
     """The node tree that a world uses, or None (from 5.0 every world has one)."""
     if VERSION < (5, 0, 0) and not world.use_nodes:
         return None
     return world.node_tree
+
+
+def compositor_nodes(scene: Any) -> Any | None:
+    """The compositor's node tree that a scene uses, or None."""
+    if hasattr(scene, "compositing_node_group"):  # from 5.0
+        return scene.compositing_node_group
+    return scene.node_tree if scene.use_nodes else None
 
 
 CURVE_SUBDIVISIONS = 2  # Cycles' default

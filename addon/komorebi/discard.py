@@ -9,6 +9,8 @@ from typing import Any
 
 import bpy
 
+from . import compat
+
 _since: float | None = None
 
 
@@ -40,13 +42,20 @@ def _candidates(scene: Any) -> Iterator[Path]:
     still = bpy.path.abspath(render.filepath)
     yield Path(still)
     yield Path(still + render.file_extension)
-    tree = getattr(scene, "node_tree", None)
-    for node in tree.nodes if tree and scene.use_nodes else ():
+    tree = compat.compositor_nodes(scene)
+    for node in tree.nodes if tree is not None else ():
         if node.type == "OUTPUT_FILE":
             yield from _file_output(node, scene.frame_current)
 
 
 def _file_output(node: Any, frame: int) -> Iterator[Path]:
+    if hasattr(node, "file_output_items"):  # from 5.0, where a name need not tell the frame
+        folder, start = bpy.path.abspath(node.directory), node.file_name.split("#")[0]
+        layers = node.format.media_type == "MULTI_LAYER_IMAGE"
+        ends = ["*.exr"] if layers else [f"*{item.name}*.*" for item in node.file_output_items]
+        for end in ends:
+            yield from Path(folder).glob(start + end)
+        return
     folder = bpy.path.abspath(node.base_path)
     if node.format.file_format == "OPEN_EXR_MULTILAYER":
         folder, name = os.path.split(folder)

@@ -1,6 +1,7 @@
 """Every failure ends `blender -b` with a non-zero code, one sentence, and no picture."""
 
 import bpy
+import compositing
 import support
 
 # How Blender prints what an engine reports.
@@ -164,17 +165,20 @@ def test_scene_strip_in_two_frames(folder):
 
 
 def test_second_scene_of_the_compositor(folder):
-    if bpy.app.version >= (5, 0, 0):
-        raise support.Skip("the compositor of 5.0 is set up in another way")
     scene, second = failing_second_scene()
-    scene.use_nodes = True
-    tree = scene.node_tree
-    layers = tree.nodes.new("CompositorNodeRLayers")
+    tree = support.compositor_tree(scene)
+    layers = compositing.layers_node(tree)
     layers.scene = second
-    output = tree.nodes.new("CompositorNodeOutputFile")
-    output.base_path = str(folder / "out")
-    tree.links.new(layers.outputs["Image"], output.inputs[0])
-    tree.links.new(layers.outputs["Image"], tree.nodes["Composite"].inputs["Image"])
+    (folder / "out").mkdir()
+    own = compositing.layers_node(tree)
+    own.scene = scene
+    files = {"Image": layers.outputs["Image"], "Own": own.outputs["Image"]}
+    compositing.file_output(tree, folder / "out", files)
+    composite = tree.nodes.get("Composite")
+    if composite is None:  # from 5.0
+        tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
+        composite = tree.nodes.new("NodeGroupOutput")
+    tree.links.new(layers.outputs["Image"], composite.inputs["Image"])
     assert_fails(rendered(folder), folder, ERROR, "focuses")
 
 
