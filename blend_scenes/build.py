@@ -19,8 +19,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import cameras
 import closed_forms
+import deforming
 import demo
 import features
+import instancing
 import settings
 import strands
 import visibility
@@ -34,6 +36,8 @@ SCENES: dict[str, Callable[[], None]] = {
     **visibility.SCENES,
     **strands.SCENES,
     **cameras.SCENES,
+    **instancing.SCENES,
+    **deforming.SCENES,
 }
 
 

@@ -38,14 +38,19 @@ def note(*_):
     sizes.append(support.resident_bytes())
     times.append(time.process_time())
 """
-ANIMATION = SCENE + """
+ANIMATION = (
+    SCENE
+    + """
 bpy.app.handlers.render_write.append(note)
 bpy.ops.render.render(animation=True)
 bpy.app.handlers.render_write.remove(note)  # a bpy module that has one left does not end
 print("NOTED", json.dumps([sizes, times]))
 """
+)
 # As data sets are made: a moved camera, a render, files by the compositor.
-DATA_SET = SCENE + """
+DATA_SET = (
+    SCENE
+    + """
 import compositing, pathlib
 tree = support.compositor_tree(scene)
 outputs = compositing.layers_node(tree).outputs
@@ -59,6 +64,7 @@ for frame in range(1, {frames} + 1):
     note()
 print("NOTED", json.dumps([sizes, times]))
 """
+)
 
 
 def noted(script, folder, persistent):

@@ -1,10 +1,8 @@
 """What outlives a frame is gone when nothing can ask for it again, and the memory with it."""
 
 import bpy
-import numpy as np
 import support
 import test_window
-
 from komorebi import cache
 
 SIDE = 600  # quads along a side of the mesh: 42 MB with its tree

@@ -35,7 +35,9 @@ pencil.scale = (2, 2, 2)
 pencil.show_in_front = False
 """
 
-INSTANCE = GREASE_PENCIL + """
+INSTANCE = (
+    GREASE_PENCIL
+    + """
 (before,) = pencil.users_collection
 before.objects.unlink(pencil)
 stock = bpy.data.collections.new("Stock")
@@ -44,6 +46,7 @@ pencil.location = (0, 0, 0)
 empty = support.add_object("Empty", None, {location})
 empty.instance_type, empty.instance_collection = "COLLECTION", stock
 """
+)
 
 
 def drawn(folder, change):

@@ -15,6 +15,7 @@ from ..unchanged import Unchanged
 from .materials import MaterialExporter
 from .names import name_of
 from .shapes import NONE, TYPES, ShapeExporter
+from .unsupported import warn_object
 from .visibility import Visibility
 from .wanted import Wanted
 
@@ -55,6 +56,7 @@ class _Exporter:
         self, engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted, unchanged: Unchanged
     ) -> None:
         self._engine = engine
+        self._scene = depsgraph.scene
         self._objects = data.objects
         self._object2index: dict[int, int] = {}
         self._shapes = ShapeExporter(engine, depsgraph, data.meshes, wanted, unchanged)
@@ -101,6 +103,7 @@ class _Exporter:
         if index is None:
             index = self._object2index[pointer] = len(self._objects)
             self._objects.append(_object_data(original))
+            warn_object(self._engine, self._scene, original)
         return index
 
     def _note_ignored(self, obj: Any, show_self: bool) -> None:

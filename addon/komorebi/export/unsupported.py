@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from .. import reporting
+from .. import compat, reporting
+from .names import name_of
 
 
 def warn_unsupported(engine: Any, depsgraph: Any) -> None:
@@ -12,3 +13,14 @@ def warn_unsupported(engine: Any, depsgraph: Any) -> None:
     scene = depsgraph.scene
     if scene.render.use_motion_blur:
         reporting.warn(engine, "motion blur is not rendered yet: the frame is taken as still")
+
+
+def warn_object(engine: Any, scene: Any, original: Any) -> None:
+    """Warnings for an object that renders."""
+    if compat.has_adaptive_subdivision(scene, original):
+        levels = original.modifiers[-1].render_levels
+        reporting.warn(
+            engine,
+            f'object "{name_of(original)}": adaptive subdivision is not rendered yet, it has '
+            f"the {levels} level{'' if levels == 1 else 's'} of its modifier",
+        )
