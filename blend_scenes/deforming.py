@@ -1,4 +1,4 @@
-"""Meshes that modifiers, keys, bones and drivers make of others, at a frame that is not the first."""
+"""Meshes that modifiers, keys, bones and drivers deform, at a frame that is not the first."""
 
 from __future__ import annotations
 
@@ -72,10 +72,8 @@ def deforming() -> None:
 
     edges = [(0, 1), (1, 2), (1, 3), (3, 4), (3, 5)]
     skin = add_mesh("Skin", [], [])
-    skin.data.from_pydata(
-        [(0, 0, 0), (0, 0, 0.5), (-0.4, 0, 0.9), (0.3, 0.1, 0.8), (0.3, -0.3, 1.2), (0.6, 0.2, 1.3)],
-        edges, [],
-    )  # fmt: skip
+    joints = [(0, 0, 0), (0, 0, 0.5), (-0.4, 0, 0.9), (0.3, 0.1, 0.8), (0.3, -0.3, 1.2)]
+    skin.data.from_pydata([*joints, (0.6, 0.2, 1.3)], edges, [])
     skin.location = (0.0, 0.1, 0.05)
     skin.modifiers.new("Skin", "SKIN")
     for vertex in skin.data.skin_vertices[0].data:

@@ -132,7 +132,7 @@ def nested_nodes() -> None:
         )
         tree = node_tree(base)
         last = ("GeometryNodeRealizeInstances",) if real else ()
-        to_points, outer, *_ = chain(
+        _, outer, *_ = chain(
             tree, "GeometryNodeMeshToPoints", "GeometryNodeInstanceOnPoints", *last
         )
         ring, cone, inner = (
