@@ -84,16 +84,6 @@ std::shared_ptr<Environment> environment_from_pixels(const std::string& name,
                                        std::vector<float>(values.begin(), values.end()));
 }
 
-/// NumPy's row-major matrix as GLM's column-major one.
-template <class T>
-Mat4d matrix4(const T* rows) {
-  Mat4d m;
-  for (int r = 0; r < 4; ++r) {
-    for (int c = 0; c < 4; ++c) m[c][r] = static_cast<double>(rows[4 * r + c]);
-  }
-  return m;
-}
-
 void add_instances(Scene& scene, std::uint32_t mesh, const py::array& matrices,
                    const py::object& object_index, const py::object& mask, const py::object& flags,
                    const py::object& material_slots, const std::string& name) {
@@ -125,8 +115,9 @@ void add_instances(Scene& scene, std::uint32_t mesh, const py::array& matrices,
 
 void set_camera(Scene& scene, const std::string& kind, const py::object& matrix, double clip_start,
                 double clip_end, std::uint32_t width, std::uint32_t height, const py::object& lens,
-                const py::object& panorama, const py::object& stereo) {
-  CameraDesc camera = camera_input(kind, matrix, lens, panorama, stereo);
+                const py::object& panorama, const py::object& stereo, const py::object& shutter,
+                const py::object& motion) {
+  CameraDesc camera = camera_input(kind, matrix, lens, panorama, stereo, shutter, motion);
   camera.clip_start = clip_start;
   camera.clip_end = clip_end;
   camera.width = width;
@@ -287,12 +278,17 @@ void bind_scene(py::module_& module) {
       .def("set_camera", &set_camera, py::arg("kind"), py::arg("matrix"), py::arg("clip_start"),
            py::arg("clip_end"), py::arg("width"), py::arg("height"), py::kw_only(),
            py::arg("lens") = py::none(), py::arg("panorama") = py::none(),
-           py::arg("stereo") = py::none(),
+           py::arg("stereo") = py::none(), py::arg("shutter") = py::none(),
+           py::arg("motion") = py::none(),
            "kind: PERSPECTIVE, ORTHOGRAPHIC or PANORAMA. matrix: projection @ view (clip from "
            "world), of a panorama world from camera, float64 [4, 4]. Clip distances in metres, "
            "width and height of the full frame in pixels. lens, panorama, stereo: dicts of numbers "
            "by the names in native/render/camera_fields.h; panorama[\"kind\"] is Blender's "
-           "panorama_type.")
+           "panorama_type. shutter: dict of curve, float32 [N], weights at even times from the "
+           "opening to the closing (uniform without), and rolling_duration for a rolling shutter. "
+           "motion: dict of matrices, world from camera at an odd number of even times, the middle "
+           "one at rest, float64 [2k + 1, 4, 4], and zoom_open and zoom_close: how much wider a "
+           "perspective view is then, tan of half the angle over that at rest.")
       .def("commit", &commit, py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
            "Builds the tree over instances; the scene is read only from here on.")
       .def_property_readonly("triangle_count", &Scene::triangle_count)

@@ -23,6 +23,8 @@ struct DumpedRender {
 ///     world/color  or  world/texels, world/strength, world/texture_from_world
 ///     camera/kind, clip_from_world or world_from_camera, clip_start, clip_end, resolution,
 ///         lens/…*, panorama/…*, stereo/…*   by the names in camera_fields.h
+///     camera/motion/poses*, zoom_open, zoom_close  (CameraMotionDesc)
+///     camera/shutter/curve*, rolling_duration*     (ShutterDesc)
 ///     settings/…   one value a setting, by its name on scene.komorebi
 ///
 /// (* only where the mesh or camera has them.) Vertices, keys and points (x, y, z, radius) are

@@ -96,7 +96,8 @@ void Scene::set_world_environment(std::shared_ptr<const Environment> environment
 
 void Scene::set_camera(const CameraDesc& camera) {
   require_open();
-  make_camera(camera, Vec3d(0.0));  // refuses what cannot be inverted
+  // Refuse what cannot be inverted.
+  CameraTables(camera, Vec3d(0.0), make_camera(camera, Vec3d(0.0)));
   camera_desc_ = camera;
   has_camera_ = true;
 }
@@ -199,7 +200,11 @@ void Scene::commit(ThreadPool& pool, const Cancel& cancel) {
   for (const InstanceView& instance : instances_) boxes.push_back(instance.world_bounds);
   // Behind each leaf stands a whole tree: the better builder pays from the first rays on.
   tree_ = build_instance_tree(boxes, Builder::kSah, pool, cancel);
-  if (has_camera_) camera_ = make_camera(camera_desc_, origin_);
+  if (has_camera_) {
+    camera_ = make_camera(camera_desc_, origin_);
+    camera_tables_ = CameraTables(camera_desc_, origin_, camera_);
+    camera_tables_.lend(camera_);
+  }
 
   view_.meshes = mesh_views_.data();
   view_.mesh_count = static_cast<std::uint32_t>(mesh_views_.size());

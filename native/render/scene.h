@@ -98,6 +98,7 @@ class Scene {
   std::vector<InstanceView> instances_;
   std::uint32_t invisible_count_ = 0;
   InstanceTree tree_;
+  CameraTables camera_tables_;
   CameraView camera_;
   SceneView view_;
 };
