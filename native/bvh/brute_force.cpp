@@ -1,6 +1,7 @@
 #include "bvh/closest.h"
 #include "bvh/round_leaf.h"
 #include "bvh/traverse.h"
+#include "core/instance_motion.h"
 
 namespace komorebi {
 namespace {
@@ -18,10 +19,12 @@ Hit test_everything(const SceneView& scene, const Ray& ray) {
   if (!is_usable(world)) return closest.hit;
   for (std::uint32_t index = 0; index < scene.instance_count; ++index) {
     LocalRay local;
-    if (!enter_instance(scene.instances[index], ray, world, &local)) continue;
-    const MeshView& mesh = scene.meshes[scene.instances[index].mesh];
+    InstanceView room;
+    const InstanceView& instance = instance_at(scene, index, ray.time, room);
+    if (!enter_instance(instance, ray, world, &local)) continue;
+    const MeshView& mesh = scene.meshes[instance.mesh];
     if (mesh.kind != PrimitiveKind::kTriangle) {
-      const RoundRay round = make_round_ray(local, local_direction(scene.instances[index], ray));
+      const RoundRay round = make_round_ray(local, local_direction(instance, ray));
       const std::uint32_t self = index == ray.self_instance ? ray.self_primitive : kNone;
       for (std::uint32_t i = 0; i < mesh.primitive_count * mesh.segment_parts; ++i) {
         const bool found = test_round_item(mesh, round, self, index, i, &closest);

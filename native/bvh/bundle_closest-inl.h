@@ -149,13 +149,11 @@ HWY_INLINE void intersect_together(const SceneView& scene, WorldBundle& bundle, 
   std::uint32_t rays = prepare(bundle, count);
   if (rays == 0 || scene.tree.node_count == 0) return;
   const auto visit = [&](std::uint32_t entry, std::uint32_t active) HWY_ATTR {
-    const std::uint32_t index = scene.leaf2instance[entry];
-    const InstanceView& instance = scene.instances[index];
-    active = seeing(instance, bundle, active);
-    if (active == 0) return 0u;
     LocalBundle local;
-    active = enter(instance, index, bundle, active, local);
-    return find_in_mesh(scene.meshes[instance.mesh], index, local, active, nearest);
+    std::uint32_t index;
+    active = enter_leaf(scene, entry, bundle, active, local, index);
+    if (active == 0) return 0u;
+    return find_in_mesh(scene.meshes[scene.instances[index].mesh], index, local, active, nearest);
   };
   const auto address = [&](std::uint32_t child) HWY_ATTR -> const void* {
     return scene.tree.nodes + (child & Waiting::kLeaf ? 0 : child);
@@ -179,6 +177,7 @@ void intersect(const SceneView& scene, const RaySpan& rays, Hit* hits) {
       hn::Store(ray, di, at.ray);
       hn::Store(ray, di, at.point);
       load_rays(rays, at, bundle, k);
+      if (scene.moves) load_times(rays, at, bundle, k);
     }
     join_masks(rays, bundle, now);
     Nearest nearest;

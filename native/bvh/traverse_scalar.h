@@ -4,6 +4,7 @@
 #include "bvh/round_leaf.h"
 #include "bvh/topology.h"
 #include "bvh/wide_node.h"
+#include "core/instance_motion.h"
 
 namespace komorebi {
 
@@ -68,10 +69,18 @@ Hit trace_scalar(const SceneView& scene, const Ray& ray, const Filter& filter) {
   const SlabRay world = make_world_slab(ray);
   if (!is_usable(world)) return closest.hit;
   const auto visit_instance = [&](std::uint32_t entry) {
-    const std::uint32_t index = scene.leaf2instance[entry];
-    const InstanceView& instance = scene.instances[index];
+    std::uint32_t index = scene.leaf2instance[entry];
+    InstanceView moved;
     LocalRay local;
-    if (!enter_instance(instance, ray, world, &local)) return false;
+    if (index >= scene.instance_count) {
+      const MotionGroup& group = scene.motion_groups[index - scene.instance_count];
+      if (!enter_group(scene, group, ray, world, &moved, &local)) return false;
+      index = group.instance;
+    } else if (!enter_instance(scene.instances[index], ray, world, &local)) {
+      return false;
+    }
+    const InstanceView& instance =
+        scene.instances[index].motion == kNoMotion ? scene.instances[index] : moved;
     const MeshView& mesh = scene.meshes[instance.mesh];
     if (mesh.kind != PrimitiveKind::kTriangle) {
       return trace_round<kAny>(mesh, index, local, local_direction(instance, ray), ray, &closest);

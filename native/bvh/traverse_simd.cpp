@@ -6,6 +6,7 @@
 #include "bvh/round_leaf.h"
 #include "bvh/simd_targets.h"
 #include "bvh/traverse_scalar.h"
+#include "core/instance_motion.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bvh/traverse_simd.cpp"

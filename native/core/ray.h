@@ -11,7 +11,7 @@ enum RayMask : std::uint32_t {
   kMaskShadow = 1u << 2,
   kMaskRays = kMaskCamera | kMaskDiffuse | kMaskShadow,
   /// The same bits, so far up, are for rays that see shadow catchers alone (as Cycles).
-  kMaskCatcherShift = 16,
+  kMaskCatcherShift = 3,
   kMaskAll = 0xffffffffu,
 };
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/instance_motion.h"
 #include "core/local_ray.h"
 #include "core/round_surface.h"
 #include "core/scene_view.h"
@@ -113,7 +114,8 @@ inline SurfacePoint round_surface_point(const InstanceView& instance, const Mesh
 /// surface as the tracer sees it.
 inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit, const Ray& ray) {
   using namespace detail;
-  const InstanceView& instance = scene.instances[hit.instance];
+  InstanceView room;
+  const InstanceView& instance = instance_at(scene, hit.instance, ray.time, room);
   const MeshView& mesh = scene.meshes[instance.mesh];
   if (mesh.kind != PrimitiveKind::kTriangle) return round_surface_point(instance, mesh, hit, ray);
   const std::size_t tri = hit.primitive;

@@ -86,7 +86,8 @@ std::shared_ptr<Environment> environment_from_pixels(const std::string& name,
 
 void add_instances(Scene& scene, std::uint32_t mesh, const py::array& matrices,
                    const py::object& object_index, const py::object& mask, const py::object& flags,
-                   const py::object& material_slots, const std::string& name) {
+                   const py::object& material_slots, const std::string& name,
+                   const py::object& motion) {
   const std::string what = "instances of \"" + name + "\": ";
   const py::ssize_t n = matrices.ndim() > 0 ? matrices.shape(0) : 0;
   const auto objects = view<std::uint32_t>(object_index, what + "object_index", {n});
@@ -109,8 +110,17 @@ void add_instances(Scene& scene, std::uint32_t mesh, const py::array& matrices,
   } else {
     fill(view<double>(matrices, what + "matrices", {-1, 4, 4}));
   }
+  std::vector<Mat4d> poses;
+  if (!motion.is_none()) {
+    const auto values = view<double>(motion, what + "motion", {n, -1, 4, 4});
+    for (std::size_t i = 0; i < values.size(); i += 16) poses.push_back(matrix4(&values[i]));
+  }
   const py::gil_scoped_release release;
-  scene.add_instances(instances, name);
+  if (motion.is_none()) {
+    scene.add_instances(instances, name);
+  } else {
+    scene.add_moving_instances(instances, poses, name);
+  }
 }
 
 void set_camera(Scene& scene, const std::string& kind, const py::object& matrix, double clip_start,
@@ -164,9 +174,10 @@ void set_tables(Scene& scene, const py::object& object_pass_index, const py::obj
   scene.set_tables(std::move(tables));
 }
 
-void commit(Scene& scene, unsigned threads, const std::shared_ptr<Cancel>& cancel) {
+void commit(Scene& scene, unsigned threads, const std::shared_ptr<Cancel>& cancel,
+            bool keep_inputs) {
   const py::gil_scoped_release release;
-  scene.commit(*build_pool(threads), cancel_or_never(cancel));
+  scene.commit(*build_pool(threads), cancel_or_never(cancel), keep_inputs);
 }
 
 void bind_mesh(py::module_& module) {
@@ -255,9 +266,11 @@ void bind_scene(py::module_& module) {
       .def("add_instances", &add_instances, py::arg("mesh"), py::arg("matrices"),
            py::arg("object_index"), py::kw_only(), py::arg("mask") = py::none(),
            py::arg("flags") = py::none(), py::arg("material_slots") = py::none(),
-           py::arg("name") = "",
+           py::arg("name") = "", py::arg("motion") = py::none(),
            "matrices: world from object, float64 or float32 [N, 4, 4], M @ p; object_index, mask, "
-           "flags, material_slots (which list of set_tables): uint32 [N].")
+           "flags, material_slots (which list of set_tables): uint32 [N]. motion: the same at an "
+           "odd number of even times from the opening of the shutter to the closing, float64 "
+           "[N, 2k + 1, 4, 4], of which matrices are the middle ones exactly.")
       .def("set_tables", &set_tables, py::kw_only(), py::arg("object_pass_index"),
            py::arg("object_mattes"), py::arg("object_terminators"), py::arg("material_pass_index"),
            py::arg("material_mattes"), py::arg("slot_begin"), py::arg("slots"),
@@ -290,7 +303,9 @@ void bind_scene(py::module_& module) {
            "one at rest, float64 [2k + 1, 4, 4], and zoom_open and zoom_close: how much wider a "
            "perspective view is then, tan of half the angle over that at rest.")
       .def("commit", &commit, py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
-           "Builds the tree over instances; the scene is read only from here on.")
+           py::arg("keep_inputs") = true,
+           "Builds the tree over instances; the scene is read only from here on. keep_inputs: for "
+           "dump(); without, matrices are given back, 152 bytes an instance.")
       .def_property_readonly("triangle_count", &Scene::triangle_count)
       .def_property_readonly("instance_count", &Scene::instance_count)
       .def_property_readonly("invisible_count", &Scene::invisible_count)

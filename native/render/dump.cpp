@@ -139,6 +139,43 @@ void put_instances(ArrayFile& file, const std::vector<InstanceInput>& instances)
   file.put<double>("instance/world_from_object", matrices, {n, 4, 4});
 }
 
+void put_poses(ArrayFile& file, const Scene& scene) {
+  const auto& moving = scene.moving_inputs();
+  if (moving.empty()) return;
+  std::vector<std::uint32_t> instance, count;
+  for (const auto& input : moving) {
+    instance.push_back(input.instance);
+    count.push_back(input.pose_count);
+  }
+  const std::size_t poses = scene.poses().size();
+  file.put<std::uint32_t>("instance/motion/instance", instance, {moving.size()});
+  file.put<std::uint32_t>("instance/motion/pose_count", count, {moving.size()});
+  file.put<double>("instance/motion/poses", span_of(glm::value_ptr(scene.poses()[0]), 16 * poses),
+                   {poses, 4, 4});
+}
+
+/// Those that stand still, and one by one those that move.
+void add_instances(const ArrayFile& file, std::span<const InstanceInput> instances, Scene& scene) {
+  const char* const name = "scene file";
+  if (!file.has("instance/motion/instance")) return scene.add_instances(instances, name);
+  const auto moving = file.get<std::uint32_t>("instance/motion/instance");
+  const auto counts = file.get<std::uint32_t>("instance/motion/pose_count", moving.size());
+  const auto numbers = file.get<double>("instance/motion/poses");
+  std::size_t added = 0, read = 0;
+  for (std::size_t m = 0; m < moving.size(); ++m) {
+    const std::size_t at = moving[m], end = read + 16 * std::size_t{counts[m]};
+    if (at < added || at >= instances.size() || end > numbers.size()) {
+      throw std::runtime_error("the scene's moving instances do not fit its instances");
+    }
+    scene.add_instances(instances.subspan(added, at - added), name);
+    std::vector<Mat4d> poses;
+    for (; read < end; read += 16) poses.push_back(glm::make_mat4(&numbers[read]));
+    scene.add_moving_instances(instances.subspan(at, 1), poses, name);
+    added = at + 1;
+  }
+  scene.add_instances(instances.subspan(added), name);
+}
+
 void get_instances(const ArrayFile& file, Scene& scene) {
   const auto mesh = file.get<std::uint32_t>("instance/mesh");
   const std::size_t n = mesh.size();
@@ -150,7 +187,7 @@ void get_instances(const ArrayFile& file, Scene& scene) {
   for (std::size_t i = 0; i < n; ++i) {
     instances[i] = {mesh[i], glm::make_mat4(&matrices[16 * i]), object[i], mask[i], flags[i]};
   }
-  scene.add_instances(instances, "scene file");
+  add_instances(file, instances, scene);
 }
 
 void put_world(ArrayFile& file, const Scene& scene) {
@@ -193,6 +230,7 @@ void write_dump(const std::string& path, const Scene& scene, const Settings& set
     put_mesh(file, "mesh/" + std::to_string(m) + "/", *scene.meshes()[m]);
   }
   put_instances(file, scene.inputs());
+  put_poses(file, scene);
   put_world(file, scene);
   put_camera(file, scene.camera_desc());
   put_settings(file, settings);

@@ -33,7 +33,9 @@ struct HitLanes {
   HWY_INLINE bool fetch(const RenderContext& context, const SurfaceBlock& block, std::uint32_t path,
                         std::size_t lane) {
     const Hit& hit = block.hits[path];
-    const InstanceView& instance = context.scene.instances[hit.instance];
+    InstanceView room;
+    const InstanceView& instance =
+        instance_at(context.scene, hit.instance, block.rays.time[path], room);
     const MeshView& mesh = context.scene.meshes[instance.mesh];
     if (mesh.kind != PrimitiveKind::kTriangle) return false;
     const std::size_t first = 3 * std::size_t{hit.primitive};
