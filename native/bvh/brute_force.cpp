@@ -1,4 +1,5 @@
 #include "bvh/closest.h"
+#include "bvh/moving_leaf.h"
 #include "bvh/round_leaf.h"
 #include "bvh/traverse.h"
 #include "core/instance_motion.h"
@@ -23,9 +24,17 @@ Hit test_everything(const SceneView& scene, const Ray& ray) {
     const InstanceView& instance = instance_at(scene, index, ray.time, room);
     if (!enter_instance(instance, ray, world, &local)) continue;
     const MeshView& mesh = scene.meshes[instance.mesh];
-    if (mesh.kind != PrimitiveKind::kTriangle) {
+    const std::uint32_t self = index == ray.self_instance ? ray.self_primitive : kNone;
+    if (mesh.kind == PrimitiveKind::kMovingTriangle) {
+      const SetPlace place = set_place(mesh.position_sets, ray.time);
+      for (std::uint32_t i = 0; i < mesh.triangle_count; ++i) {
+        const bool found = test_moving_triangle(mesh, local, place, self, index, i, &closest);
+        if (kAny && found) return closest.hit;
+      }
+      continue;
+    }
+    if (is_round(mesh.kind)) {
       const RoundRay round = make_round_ray(local, local_direction(instance, ray));
-      const std::uint32_t self = index == ray.self_instance ? ray.self_primitive : kNone;
       for (std::uint32_t i = 0; i < mesh.primitive_count * mesh.segment_parts; ++i) {
         const bool found = test_round_item(mesh, round, self, index, i, &closest);
         if (kAny && found) return closest.hit;

@@ -106,11 +106,34 @@ HWY_NOINLINE std::uint32_t walk_round(const MeshView& mesh, std::uint32_t instan
   return found;
 }
 
+/// Rays of `bundle` that a mesh that deforms blocks.
+HWY_NOINLINE std::uint32_t walk_moving(const MeshView& mesh, std::uint32_t instance,
+                                       const LocalBundle& bundle, std::uint32_t rays) {
+  const MovingRays moving(mesh, bundle, rays);
+  Closest any;
+  std::uint32_t found = 0;
+  while (rays != 0) {
+    const TimeTree* tree;
+    const std::uint32_t now = same_octant(bundle.slab, moving.same_time(rays, tree));
+    const auto visit = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
+      return moving.meet(mesh, instance, tree->leaf2triangle[leaf], active,
+                         [&](std::uint32_t) { return &any; });
+    };
+    const auto address = [&](std::uint32_t child) HWY_ATTR { return moving_child(*tree, child); };
+    const WalkingRays walking(bundle.slab, now);
+    const Reach reach(walking, bundle.rays, now);
+    found |= walk_bundle(tree->tree, walking, reach, now, visit, address);
+    rays &= ~now;
+  }
+  return found;
+}
+
 /// Rays of `bundle` that a mesh blocks.
 HWY_INLINE std::uint32_t walk_mesh(const MeshView& mesh, std::uint32_t instance,
                                    const LocalBundle& bundle, std::uint32_t rays, Turn& turn) {
   if (HWY_UNLIKELY(mesh.kind != PrimitiveKind::kTriangle)) {
-    return walk_round(mesh, instance, bundle, rays);
+    return is_round(mesh.kind) ? walk_round(mesh, instance, bundle, rays)
+                               : walk_moving(mesh, instance, bundle, rays);
   }
   const auto test = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
     const std::byte* record = mesh.clusters + std::size_t{leaf} * kClusterUnit;
@@ -159,7 +182,7 @@ struct WorldBundle {
   Bundle rays;
   BundleSlab slab;
   std::uint32_t self_instance[kBundle], self_primitive[kBundle], mask[kBundle];
-  float time[kBundle];  ///< where the scene moves
+  float time[kBundle];                   ///< where the scene moves
   std::uint32_t some_mask, common_mask;  ///< of all rays: bits that any has, bits that each has
 };
 
@@ -307,9 +330,8 @@ HWY_INLINE std::uint32_t occluded_together(const SceneView& scene, WorldBundle& 
                                            std::uint32_t count, Turn& turn) {
   std::uint32_t rays = prepare(bundle, count);
   if (rays == 0 || scene.tree.node_count == 0) return 0;
-  const auto visit = [&](std::uint32_t entry, std::uint32_t active) HWY_ATTR {
-    return visit_instance(scene, entry, bundle, active, turn);
-  };
+  const auto visit = [&](std::uint32_t entry, std::uint32_t active)
+                         HWY_ATTR { return visit_instance(scene, entry, bundle, active, turn); };
   // One instance alone needs no tree: entering it looks at its box anyway.
   if (is_alone(scene)) return visit(0, rays);
   const auto address = [&](std::uint32_t child) HWY_ATTR -> const void* {

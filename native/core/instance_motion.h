@@ -5,9 +5,9 @@
 
 namespace komorebi {
 
-/// An instance between two of its keys: matrices are interpolated linearly, which the keys are close
-/// enough for (render/instance_motion.h), in double and rounded as those of an instance that stands
-/// still.
+/// An instance between two of its keys: matrices are interpolated linearly, which the keys are
+/// close enough for (render/instance_motion.h), in double and rounded as those of an instance that
+/// stands still.
 inline InstanceView moved_instance(const InstanceView& instance, const MotionKey* key,
                                    double fraction) {
   const double s = 1.0 - fraction;
@@ -31,7 +31,8 @@ inline const InstanceView& instance_at(const SceneView& scene, std::uint32_t ind
   if (instance.motion == kNoMotion) return instance;
   const InstanceMotion& motion = scene.motions[instance.motion];
   const MotionPlace place = motion_place(motion.key_count, static_cast<double>(time));
-  room = moved_instance(instance, scene.motion_keys + motion.first_key + place.step, place.fraction);
+  room =
+      moved_instance(instance, scene.motion_keys + motion.first_key + place.step, place.fraction);
   return room;
 }
 

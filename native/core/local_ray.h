@@ -38,9 +38,9 @@ inline Vec3 local_direction(const InstanceView& instance, const Ray& ray) {
   return product(instance.local_from_world, ray.direction);
 }
 
-/// Rounding of the way into local space per axis, the ray origin's part apart: the direction's error
-/// acts over the length of the ray, which up to a hit is at most the ray origin's distance from
-/// `position` (bounded per ray) and that of the hit from it (here).
+/// Rounding of the way into local space per axis, the ray origin's part apart: the direction's
+/// error acts over the length of the ray, which up to a hit is at most the ray origin's distance
+/// from `position` (bounded per ray) and that of the hit from it (here).
 inline Vec3 local_error(const InstanceView& instance) {
   const Aabb& box = instance.world_bounds;
   const Vec3 to_lower = absolute(box.lo - instance.position);

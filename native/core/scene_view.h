@@ -8,7 +8,12 @@
 namespace komorebi {
 
 /// What a mesh's primitives are; all come behind the same records.
-enum class PrimitiveKind : std::uint32_t { kTriangle = 0, kCurve = 1, kSphere = 2 };
+enum class PrimitiveKind : std::uint32_t {
+  kTriangle = 0,
+  kCurve = 1,
+  kSphere = 2,
+  kMovingTriangle = 3,  ///< of a mesh that deforms: core/moving_triangle.h
+};
 
 /// What a curve looks like: flat and turned to every ray, or round (core/curve.h).
 enum class CurveShape : std::uint32_t { kRibbon = 0, kThick = 1 };
@@ -43,6 +48,12 @@ struct TreeView {
   std::uint32_t depth = 0;  ///< of the wide tree; bounds the traversal stack
 };
 
+/// A deforming mesh's tree for some of the shutter's time (bvh/moving_tree.h).
+struct TimeTree {
+  TreeView tree;
+  const std::uint32_t* leaf2triangle = nullptr;
+};
+
 /// One mesh as the tracer and the shading read it; spans into memory that Mesh owns.
 /// Local space is Blender's object space moved by the mesh's own origin (render/mesh.h).
 struct MeshView {
@@ -50,10 +61,12 @@ struct MeshView {
   std::uint32_t opaque = 1;  ///< 1: no leaf filter is ever needed
   std::uint32_t triangle_count = 0;
   std::uint32_t vertex_count = 0;
-  std::uint32_t position_sets = 1;         ///< 1 = still; n sets of vertex_count positions in time
-  const float* vtx2xyz = nullptr;          ///< [position_sets][vertex_count][3]
+  std::uint32_t position_sets = 1;  ///< 1 = still; n sets of vertex_count positions at even times
+  const float* vtx2xyz = nullptr;   ///< [position_sets][vertex_count][3]
   const std::uint32_t* tri2vtx = nullptr;  ///< [triangle_count][3]
-  const float* normals = nullptr;          ///< [by vertex or by corner][3], unit; null: all flat
+  std::uint32_t normal_sets = 1;           ///< 1: the same at all times
+  std::uint32_t normal_count = 0;          ///< of a set
+  const float* normals = nullptr;  ///< [normal_sets][by vertex or by corner][3]; null: all flat
   const std::uint32_t* tri2normal = nullptr;    ///< [triangle_count][3], rows of `normals`
   const std::uint8_t* tri2smooth = nullptr;     ///< [triangle_count]; null: all smooth if `normals`
   const std::uint16_t* tri2material = nullptr;  ///< [triangle_count]; null: all slot 0
@@ -61,7 +74,9 @@ struct MeshView {
   const AttributeView* attributes = nullptr;
   std::uint32_t attribute_count = 0;
   TreeView tree;
-  const std::byte* clusters = nullptr;  ///< leaves of the tree: bvh/triangle_cluster.h
+  const std::byte* clusters = nullptr;   ///< leaves of the tree: bvh/triangle_cluster.h
+  const TimeTree* time_trees = nullptr;  ///< of a mesh that deforms, in place of the other
+  std::uint32_t time_tree_count = 0;
   // Curves and spheres instead of triangles; primitives are segments (of all curves), or points.
   CurveShape shape = CurveShape::kRibbon;
   std::uint32_t pieces = 1;                    ///< of a segment
@@ -116,6 +131,10 @@ struct InstanceView {
   std::uint32_t material_slots = 0;  ///< which list of slots (render/scene_tables.h)
 };
 static_assert(sizeof(InstanceView) == 124);
+
+inline bool is_round(PrimitiveKind kind) {
+  return kind == PrimitiveKind::kCurve || kind == PrimitiveKind::kSphere;
+}
 
 /// A committed scene, as plain pointers and counts: what kernels get.
 struct SceneView {

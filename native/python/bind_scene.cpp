@@ -22,7 +22,9 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
                                 const py::object& face_materials, const py::object& vertex_normals,
                                 const py::object& corner_uvs, const std::string& builder,
                                 unsigned threads, const std::shared_ptr<Cancel>& cancel,
-                                const std::shared_ptr<Mesh>& same_geometry) {
+                                const std::shared_ptr<Mesh>& same_geometry,
+                                const py::object& motion_positions,
+                                const py::object& motion_normals) {
   const std::string mesh = "mesh \"" + name + "\": ";
   MeshInput input;
   input.name = name;
@@ -37,6 +39,13 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
   input.face2smooth = {reinterpret_cast<const std::uint8_t*>(smooth.data()), smooth.size()};
   input.face2material = optional_view<std::int32_t>(face_materials, mesh + "face_materials", {-1});
   input.corner2uv = optional_view<float>(corner_uvs, mesh + "corner_uvs", {-1, 2});
+  const auto vertices = static_cast<py::ssize_t>(input.vtx2xyz.size() / 3);
+  const auto normals =
+      static_cast<py::ssize_t>(std::max(input.vtx2normal.size(), input.corner2normal.size()) / 3);
+  input.motion_positions =
+      optional_view<float>(motion_positions, mesh + "motion_positions", {-1, vertices, 3});
+  input.motion_normals =
+      optional_view<float>(motion_normals, mesh + "motion_normals", {-1, normals, 3});
   const Builder kind = builder_from_name(builder);
   const py::gil_scoped_release release;
   // Python has no const; nothing that is bound below changes a mesh.
@@ -195,7 +204,10 @@ int32 [T]: Blender's loop triangles; None if every face has three or four corner
 corner_normals: float32 [C, 3], or vertex_normals: float32 [V, 3], unit; a row that is not finite
 counts as none, and without both every face is flat. smooth_faces: bool [F], None if all are
 smooth. face_materials: int32 [F]. corner_uvs: float32 [C, 2], for the UV pass. builder: LINEAR, SAH, PRINCIPAL_AXIS or LIST.
-same_geometry: a mesh made from the same positions, corners and triangles, whose tree is shared then.
+same_geometry: a mesh made from the same positions, motion_positions, corners and triangles, whose
+tree is shared then. motion_positions: float32 [2k, V, 3], positions at the other times of the
+shutter in their order; all with `positions` in the middle are at even times from its opening to its
+closing. motion_normals: float32 [2k, C or V, 3] likewise; None if normals do not change.
 Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
            py::arg("name"), py::arg("positions"), py::arg("corner_verts"), py::arg("face_offsets"),
            py::kw_only(), py::arg("tri2corner") = py::none(), py::arg("tri2face") = py::none(),
@@ -203,7 +215,8 @@ Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
            py::arg("face_materials") = py::none(), py::arg("vertex_normals") = py::none(),
            py::arg("corner_uvs") = py::none(), py::arg("builder") = "LINEAR",
            py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
-           py::arg("same_geometry") = std::shared_ptr<Mesh>())
+           py::arg("same_geometry") = std::shared_ptr<Mesh>(),
+           py::arg("motion_positions") = py::none(), py::arg("motion_normals") = py::none())
       .def(
           "rebuilt",
           [](const Mesh& old, const std::string& builder, unsigned threads,
@@ -216,6 +229,7 @@ Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
           py::arg("builder"), py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
           "The same mesh with a tree by another builder. Raises Cancelled.")
       .def_property_readonly("name", &Mesh::name)
+      .def_property_readonly("deforms", &Mesh::deforms)
       .def_property_readonly("triangle_count", &Mesh::triangle_count)
       .def_property_readonly("vertex_count", &Mesh::vertex_count)
       .def_property_readonly("degenerate_count", &Mesh::degenerate_count)

@@ -44,7 +44,8 @@ CameraTables::CameraTables(const CameraDesc& desc, const Vec3d& scene_origin,
     return;
   }
   const std::size_t count = motion.poses.size();
-  require(count >= 3 && count % 2 == 1 && count <= 4097, "the poses must be 3 to 4097, an odd number");
+  require(count >= 3 && count % 2 == 1 && count <= 4097,
+          "the poses must be 3 to 4097, an odd number");
   std::vector<Mat4d> poses;
   for (const Mat4d& pose : motion.poses) poses.push_back(unscaled(pose));
   const Mat4d& rest = poses[count / 2];

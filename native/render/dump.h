@@ -16,7 +16,8 @@ struct DumpedRender {
 
 /// Writes everything a render needs into one file of named arrays (io/array_file.h):
 ///
-///     mesh/N/name, vtx2xyz, origin, tri2vtx, corner2normal*, tri2smooth*, tri2material*
+///     mesh/N/name, vtx2xyz, origin, tri2vtx, corner2normal*, tri2smooth*, tri2material*,
+///         motion_positions*, motion_corner2normal*  (MeshInput)
 ///     mesh/N/name, origin, keys, curve_offsets, shape, subdivisions  (curves)
 ///     mesh/N/name, origin, points  (points)
 ///     instance/mesh, world_from_object, object_index, mask, flags

@@ -9,9 +9,9 @@
 namespace komorebi {
 namespace {
 
-constexpr double kTolerance = 1e-4;           ///< of the instance's size
+constexpr double kTolerance = 1e-4;  ///< of the instance's size
 constexpr std::uint32_t kMostSegments = 4096;
-constexpr float kWorthTwoLeaves = 0.7f;       ///< area of the halves over that of the whole
+constexpr float kWorthTwoLeaves = 0.7f;  ///< area of the halves over that of the whole
 constexpr int kMostHalvings = 5;
 
 /// The corners of a mesh's box on their way.
@@ -21,9 +21,9 @@ class Way {
       const Vec3d& scene_origin)
       : poses_(decompose_poses(poses, scene_origin)) {
     for (int k = 0; k < 8; ++k) {
-      corner_[k] = mesh_origin + Vec3d(k & 1 ? bounds.hi.x : bounds.lo.x,
-                                       k & 2 ? bounds.hi.y : bounds.lo.y,
-                                       k & 4 ? bounds.hi.z : bounds.lo.z);
+      corner_[k] =
+          mesh_origin + Vec3d(k & 1 ? bounds.hi.x : bounds.lo.x, k & 2 ? bounds.hi.y : bounds.lo.y,
+                              k & 4 ? bounds.hi.z : bounds.lo.z);
     }
     for (std::uint32_t i = 0; i <= steps(); ++i) {
       const AffineMap map = at(double(i) / steps());
@@ -62,7 +62,8 @@ class Way {
       const double t = double(i) / parts;
       const AffineMap m = at(begin + t * (end - begin));
       for (const Vec3d& corner : corner_) {
-        const Vec3d from = a.linear * corner + a.translation, to = b.linear * corner + b.translation;
+        const Vec3d from = a.linear * corner + a.translation,
+                    to = b.linear * corner + b.translation;
         const Vec3d off = m.linear * corner + m.translation - ((1.0 - t) * from + t * to);
         if (!(glm::length(off) <= kTolerance * size_)) return false;
       }

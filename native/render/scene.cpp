@@ -289,6 +289,7 @@ void Scene::commit(ThreadPool& pool, const Cancel& cancel, bool keep_inputs) {
   view_.motion_groups = motion_.groups.data();
   view_.motion_group_count = static_cast<std::uint32_t>(motion_.groups.size());
   view_.moves = !motion_.groups.empty();
+  for (const auto& mesh : traced_meshes_) view_.moves = view_.moves || mesh->deforms();
 }
 
 std::uint64_t Scene::triangle_count() const {
@@ -302,11 +303,11 @@ std::uint64_t Scene::triangle_count() const {
 }
 
 std::size_t Scene::byte_count() const {
-  std::size_t sum =
-      sizeof(Scene) + tree_.byte_count() + instances_.capacity() * sizeof(InstanceView) +
-      inputs_.capacity() * sizeof(InstanceInput) + mesh_views_.capacity() * sizeof(MeshView) +
-      poses_.capacity() * sizeof(Mat4d) + moving_inputs_.capacity() * sizeof(MovingInput) +
-      motion_.byte_count();
+  std::size_t sum = sizeof(Scene) + tree_.byte_count() +
+                    instances_.capacity() * sizeof(InstanceView) +
+                    inputs_.capacity() * sizeof(InstanceInput) +
+                    mesh_views_.capacity() * sizeof(MeshView) + poses_.capacity() * sizeof(Mat4d) +
+                    moving_inputs_.capacity() * sizeof(MovingInput) + motion_.byte_count();
   for (const auto& mesh : traced_meshes_.empty() ? meshes_ : traced_meshes_) {
     sum += mesh->byte_count();
   }

@@ -72,8 +72,8 @@ class Scene {
 
   const Vec3d& origin() const { return origin_; }
   const std::vector<std::shared_ptr<const Mesh>>& meshes() const { return meshes_; }
-  /// What was added, for whoever writes it down; throws std::invalid_argument if commit has given it
-  /// back.
+  /// What was added, for whoever writes it down; throws std::invalid_argument if commit has given
+  /// it back.
   const std::vector<InstanceInput>& inputs() const;
   /// Poses of those of inputs() that move, in their order.
   struct MovingInput {

@@ -15,8 +15,8 @@ constexpr std::uint32_t kWidth = 150, kHeight = 90;
 
 Mat4d pose(int step) {
   const double s = step;
-  return glm::rotate(glm::translate(Mat4d(1.0), Vec3d(300.0 + s, -2.0 + 0.3 * s * s, 1.0)),
-                     0.2 * s, glm::normalize(Vec3d(1, 2, 0.5)));
+  return glm::rotate(glm::translate(Mat4d(1.0), Vec3d(300.0 + s, -2.0 + 0.3 * s * s, 1.0)), 0.2 * s,
+                     glm::normalize(Vec3d(1, 2, 0.5)));
 }
 
 CameraDesc camera_of(CameraKind kind, const Mat4d& world_from_camera, double zoom = 1.0) {
@@ -28,11 +28,10 @@ CameraDesc camera_of(CameraKind kind, const Mat4d& world_from_camera, double zoo
   camera.clip_end = 50.0;
   camera.world_from_camera = world_from_camera;
   const double x = 0.4, y = 0.24, shift = 0.1;  // half extents and a lens shift
-  const Mat4d projection =
-      kind == CameraKind::kOrthographic
-          ? glm::ortho(-5 * x, 5 * x, -5 * y, 5 * y, 0.1, 50.0)
-          : glm::frustum(0.1 * zoom * (shift - x), 0.1 * zoom * (shift + x), -0.1 * zoom * y,
-                         0.1 * zoom * y, 0.1, 50.0);
+  const Mat4d projection = kind == CameraKind::kOrthographic
+                               ? glm::ortho(-5 * x, 5 * x, -5 * y, 5 * y, 0.1, 50.0)
+                               : glm::frustum(0.1 * zoom * (shift - x), 0.1 * zoom * (shift + x),
+                                              -0.1 * zoom * y, 0.1 * zoom * y, 0.1, 50.0);
   camera.clip_from_world = projection * glm::inverse(world_from_camera);
   return camera;
 }
@@ -91,9 +90,8 @@ TEST(CameraMotion, ZoomsLinearlyOnEitherSideOfTheRest) {
   };
   expect_the_cameras_of_each_pose(camera, at);
   camera.motion.poses.assign(3, pose(0));
-  expect_the_cameras_of_each_pose(camera, [&](int step) {
-    return camera_of(CameraKind::kPerspective, pose(0), zoom(step));
-  });
+  expect_the_cameras_of_each_pose(
+      camera, [&](int step) { return camera_of(CameraKind::kPerspective, pose(0), zoom(step)); });
 }
 
 TEST(CameraMotion, RefusesWhatStandsForNothing) {

@@ -133,6 +133,15 @@ std::shared_ptr<Scene> moving_scene(Builder builder = Builder::kLinear) {
   move(ball, [](double t) {
     return glm::scale(glm::translate(Mat4d(1.0), Vec3d(-0.5, -1.5, 0.5)), Vec3d(t));
   });
+  const auto wave = deforming(
+      sphere(16, {0, 0, 0}, 0.7, true), 4,
+      [](const Vec3d& p, double t) {
+        return p + Vec3d(1.5 * t * t, 0.0, 0.3 * std::sin(9.0 * p.x + 4.0 * t));
+      },
+      builder);
+  const InstanceInput waving{scene->add_mesh(wave), glm::translate(Mat4d(1.0), Vec3d(1, 1.5, 1))};
+  scene->add_instances({&waving, 1}, "waving");
+  move(wave, [](double t) { return glm::translate(Mat4d(1.0), Vec3d(-2.5, -1.0 + t, 1.0)); });
   scene->set_world_environment(gradient_map(), 0.7, Mat3d(1.0));
   return committed(scene);
 }

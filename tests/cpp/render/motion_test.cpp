@@ -3,70 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 
-#include "bvh/traverse.h"
-#include "support/ray_list.h"
-#include "support/scenes.h"
+#include "support/moving.h"
 
 namespace komorebi::testing {
 namespace {
-
-using Way = std::function<Mat4d(double)>;
-
-void add_moving(Scene& scene, const std::shared_ptr<const Mesh>& mesh, const Way& way, int count) {
-  std::vector<Mat4d> poses;
-  for (int i = 0; i < count; ++i) poses.push_back(way(double(i) / (count - 1)));
-  const InstanceInput instance{scene.add_mesh(mesh), poses[static_cast<std::size_t>(count / 2)]};
-  scene.add_moving_instances({&instance, 1}, poses, "moving");
-}
-
-Mat4d translated(double x, double y, double z) {
-  return glm::translate(Mat4d(1.0), Vec3d(x, y, z));
-}
-
-RayList random_rays(std::uint32_t count, const Vec3& centre, float radius) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<float> number(-1.0f, 1.0f);
-  RayList rays;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    Ray ray;
-    const Vec3 target = centre + radius * Vec3(number(random), number(random), number(random));
-    ray.origin = centre + 2.0f * radius * Vec3(number(random), number(random), number(random));
-    ray.direction = target - ray.origin;
-    ray.time = i % 7 == 0 ? 0.25f * float(i % 5) : 0.5f + 0.5f * number(random);
-    ray.mask = i % 3 == 0 ? kMaskShadow : kMaskAll;
-    if (i % 11 == 0) ray.self_instance = i % 4, ray.self_primitive = i % 50;
-    rays.push_back(ray);
-  }
-  return rays;
-}
-
-/// Closest and any hits of every kernel are those of brute force; how many hits there are.
-std::uint32_t expect_brute_force(const Scene& scene, const RayList& rays) {
-  std::vector<Hit> expected, hits(rays.size());
-  std::uint32_t found = 0;
-  for (std::uint32_t i = 0; i < rays.size(); ++i) {
-    expected.push_back(intersect_brute_force(scene.view(), rays[i]));
-    found += expected.back().valid() ? 1u : 0u;
-  }
-  for (const std::string& name : built_instruction_sets()) {
-    force_instruction_set(name);
-    intersect(scene.view(), rays.span(), hits.data());
-    std::vector<std::uint32_t> bits((rays.size() + 31) / 32);
-    occluded(scene.view(), rays.span(), bits.data());
-    std::uint32_t wrong = 0;
-    for (std::uint32_t i = 0; i < rays.size(); ++i) {
-      wrong += std::memcmp(&expected[i], &hits[i], sizeof(Hit)) != 0;
-      wrong += ((bits[i / 32] >> (i % 32)) & 1u) != (expected[i].valid() ? 1u : 0u);
-    }
-    EXPECT_EQ(wrong, 0u) << name;
-  }
-  force_instruction_set("");
-  return found;
-}
 
 std::vector<Way> ways(const Vec3d& at) {
   const Mat4d place = glm::translate(Mat4d(1.0), at);
@@ -96,10 +39,13 @@ TEST(MovingInstances, AgreeWithBruteForceForEveryBuilderAndKernel) {
       for (const int count : {3, 7}) {
         for (const Way& way : ways(at)) add_moving(*scene, ball, way, count);
       }
-      add_moving(*scene, flat, [&](double t) {
-        return glm::rotate(glm::translate(Mat4d(1.0), at), 1.0 * t, Vec3d(0, 0, 1)) *
-               translated(-40, 0, 0);
-      }, 5);
+      add_moving(
+          *scene, flat,
+          [&](double t) {
+            return glm::rotate(glm::translate(Mat4d(1.0), at), 1.0 * t, Vec3d(0, 0, 1)) *
+                   translated(-40, 0, 0);
+          },
+          5);
       committed(scene);
       const Vec3 centre(at - scene->origin());
       EXPECT_GT(expect_brute_force(*scene, random_rays(1500, centre, 6.0f)), 300u);
@@ -138,7 +84,8 @@ TEST(MovingInstances, HitWhatAStillOneHitsThatStandsThere) {
       b.origin = eye - Vec3(still->origin());
       a.direction = b.direction = (target - eye) / glm::length(target - eye);
       a.time = static_cast<float>(t);
-      const Hit hit = intersect_scalar(moving->view(), a), other = intersect_scalar(still->view(), b);
+      const Hit hit = intersect_scalar(moving->view(), a),
+                other = intersect_scalar(still->view(), b);
       if (!hit.valid() && !other.valid()) continue;
       ++compared;
       if (hit.valid() != other.valid()) {
@@ -149,9 +96,9 @@ TEST(MovingInstances, HitWhatAStillOneHitsThatStandsThere) {
         if (hit.primitive != other.primitive) continue;
         most = std::max(most, double(glm::length(p.geometric_normal - q.geometric_normal)));
         if (glm::dot(p.geometric_normal, a.direction) > -0.2f) continue;
-        EXPECT_LT(glm::length(Vec3d(p.position) + moving->origin() - Vec3d(q.position) -
-                              still->origin()),
-                  2e-3);
+        EXPECT_LT(
+            glm::length(Vec3d(p.position) + moving->origin() - Vec3d(q.position) - still->origin()),
+            2e-3);
       }
     }
   }
@@ -160,49 +107,23 @@ TEST(MovingInstances, HitWhatAStillOneHitsThatStandsThere) {
   EXPECT_LT(most, 2e-3);
 }
 
-/// The alpha of a row of pixels of an orthographic picture of [−1, 1]², seen from above.
-std::vector<double> coverage(const std::shared_ptr<Scene>& scene, std::uint32_t width,
-                             std::uint32_t row) {
-  Settings settings;
-  settings.samples = 8192;
-  settings.light_samples = 1;
-  settings.film_transparent = true;
-  settings.pixel_filter = PixelFilter::kBox;
-  settings.has_region = true;
-  settings.region = {0, row, width, row + 1};
-  const auto picture = render(committed(scene), settings);
-  std::vector<double> alpha;
-  for (std::uint32_t x = 0; x < width; ++x) alpha.push_back(double{picture[4 * x + 3]});
-  return alpha;
-}
-
-CameraDesc from_above(std::uint32_t width) {
-  CameraDesc camera = probe_at(Vec3d(0.0), Vec3d(0, 0, 1), 1.0);
-  camera.width = camera.height = width;
-  return camera;
-}
-
 TEST(MovingInstances, ASquareThatPassesCoversATrapezoid) {
   auto scene = make_scene({}, from_above(40));
-  add_moving(*scene, quad({-0.2, -0.5, 0}, {0.4, 0, 0}, {0, 1, 0}).mesh(),
-             [](double t) { return translated(1.0 * t - 0.5, 0, 0); }, 3);
+  add_moving(
+      *scene, quad({-0.2, -0.5, 0}, {0.4, 0, 0}, {0, 1, 0}).mesh(),
+      [](double t) { return translated(1.0 * t - 0.5, 0, 0); }, 3);
   const auto alpha = coverage(scene, 40, 20);
-  // The share of time at x, and its integral from the left.
-  const auto integral = [](double x) {
-    const auto ramp = [](double at) { return at > 0.0 ? 0.5 * at * at : 0.0; };
-    return ramp(x + 0.7) - ramp(x + 0.3) - ramp(x - 0.3) + ramp(x - 0.7);
-  };
   for (std::uint32_t x = 0; x < 40; ++x) {
-    const double lo = -1.0 + 0.05 * x;
-    EXPECT_NEAR(alpha[x], (integral(lo + 0.05) - integral(lo)) / 0.05, 6e-3) << x;
+    EXPECT_NEAR(alpha[x], trapezoid(-1.0 + 0.05 * x), 6e-3) << x;
   }
 }
 
 TEST(MovingInstances, ABarThatTurnsCoversByTheArcsOfItsWidth) {
   auto scene = make_scene({}, from_above(400));
-  add_moving(*scene, quad({-0.95, -0.1, 0}, {1.9, 0, 0}, {0, 0.2, 0}).mesh(), [](double t) {
-    return glm::rotate(Mat4d(1.0), glm::pi<double>() * t + 0.4, Vec3d(0, 0, 1));
-  }, 3);
+  add_moving(
+      *scene, quad({-0.95, -0.1, 0}, {1.9, 0, 0}, {0, 0.2, 0}).mesh(),
+      [](double t) { return glm::rotate(Mat4d(1.0), glm::pi<double>() * t + 0.4, Vec3d(0, 0, 1)); },
+      3);
   const auto alpha = coverage(scene, 400, 200);
   int compared = 0;
   for (std::uint32_t x = 0; x < 400; ++x) {
@@ -218,8 +139,10 @@ TEST(MovingInstances, ABarThatTurnsCoversByTheArcsOfItsWidth) {
 TEST(MovingInstances, ABallThatComesNearGrows) {
   const std::vector<float> at = {0, 0, 0}, radius = {0.5f};
   auto scene = make_scene({}, camera_at({0, -10, 0}, {0, 0, 0}, 200, 200));
-  add_moving(*scene, Mesh::build(PointsInput{"ball", at, radius}, Builder::kLinear, shared_pool(), Cancel()),
-             [](double t) { return translated(0, -6.0 * t, 0); }, 3);
+  add_moving(
+      *scene,
+      Mesh::build(PointsInput{"ball", at, radius}, Builder::kLinear, shared_pool(), Cancel()),
+      [](double t) { return translated(0, -6.0 * t, 0); }, 3);
   const auto alpha = coverage(scene, 200, 100);
   for (std::uint32_t x = 0; x < 200; ++x) {
     const glm::dvec2 tangent = glm::dvec2(double(x) + 0.5 - 100.0, 0.5) * (0.36 / 100.0);
@@ -249,7 +172,8 @@ TEST(MovingInstances, StandStillWhenTheirPosesDo) {
   const CameraDesc camera = camera_at({4, -6, 3}, {0, 0, 0}, 40, 30);
   const auto ball = sphere(9, Vec3d(0), 1.0, true).mesh();
   auto scene = make_scene({}, camera);
-  add_moving(*scene, ball, [](double) { return translated(0.1, 0.2, 0.3); }, 3);
+  add_moving(
+      *scene, ball, [](double) { return translated(0.1, 0.2, 0.3); }, 3);
   EXPECT_EQ(render(committed(scene), Settings{}),
             render(committed(make_scene({{ball, translated(0.1, 0.2, 0.3)}}, camera)), Settings{}));
   EXPECT_FALSE(scene->view().moves);
