@@ -1,6 +1,8 @@
 #include "bvh/closest.h"
+#include "bvh/moving_leaf.h"
 #include "bvh/round_leaf.h"
 #include "bvh/traverse.h"
+#include "core/instance_motion.h"
 
 namespace komorebi {
 namespace {
@@ -18,11 +20,21 @@ Hit test_everything(const SceneView& scene, const Ray& ray) {
   if (!is_usable(world)) return closest.hit;
   for (std::uint32_t index = 0; index < scene.instance_count; ++index) {
     LocalRay local;
-    if (!enter_instance(scene.instances[index], ray, world, &local)) continue;
-    const MeshView& mesh = scene.meshes[scene.instances[index].mesh];
-    if (mesh.kind != PrimitiveKind::kTriangle) {
-      const RoundRay round = make_round_ray(local, local_direction(scene.instances[index], ray));
-      const std::uint32_t self = index == ray.self_instance ? ray.self_primitive : kNone;
+    InstanceView room;
+    const InstanceView& instance = instance_at(scene, index, ray.time, room);
+    if (!enter_instance(instance, ray, world, &local)) continue;
+    const MeshView& mesh = scene.meshes[instance.mesh];
+    const std::uint32_t self = index == ray.self_instance ? ray.self_primitive : kNone;
+    if (mesh.kind == PrimitiveKind::kMovingTriangle) {
+      const SetPlace place = set_place(mesh.position_sets, ray.time);
+      for (std::uint32_t i = 0; i < mesh.triangle_count; ++i) {
+        const bool found = test_moving_triangle(mesh, local, place, self, index, i, &closest);
+        if (kAny && found) return closest.hit;
+      }
+      continue;
+    }
+    if (is_round(mesh.kind)) {
+      const RoundRay round = make_round_ray(local, local_direction(instance, ray));
       for (std::uint32_t i = 0; i < mesh.primitive_count * mesh.segment_parts; ++i) {
         const bool found = test_round_item(mesh, round, self, index, i, &closest);
         if (kAny && found) return closest.hit;

@@ -106,12 +106,39 @@ HWY_NOINLINE std::uint32_t find_in_round(const MeshView& mesh, std::uint32_t ins
   return all_found;
 }
 
+/// Rays of `bundle` that find something nearer in a mesh that deforms.
+HWY_NOINLINE std::uint32_t find_in_moving(const MeshView& mesh, std::uint32_t instance,
+                                          const LocalBundle& bundle, std::uint32_t rays,
+                                          Nearest& nearest) {
+  const MovingRays moving(mesh, bundle, rays);
+  std::uint32_t all_found = 0;
+  while (rays != 0) {
+    const TimeTree* tree;
+    const std::uint32_t now = same_octant(bundle.slab, moving.same_time(rays, tree));
+    const auto visit = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
+      const std::uint32_t found = moving.meet(mesh, instance, tree->leaf2triangle[leaf], active,
+                                              [&](std::uint32_t i) { return &nearest.closest[i]; });
+      for (std::uint32_t left = found; left != 0; left &= left - 1) {
+        const auto i = static_cast<std::uint32_t>(__builtin_ctz(left));
+        nearest.limit[i] = nearest.closest[i].limit;
+      }
+      all_found |= found;
+      return found;
+    };
+    const auto address = [&](std::uint32_t child) HWY_ATTR { return moving_child(*tree, child); };
+    walk_closest(tree->tree, bundle.rays, bundle.slab, now, nearest, visit, address);
+    rays &= ~now;
+  }
+  return all_found;
+}
+
 /// Rays of `bundle` that find something nearer in a mesh.
 HWY_INLINE std::uint32_t find_in_mesh(const MeshView& mesh, std::uint32_t instance,
                                       const LocalBundle& bundle, std::uint32_t rays,
                                       Nearest& nearest) {
   if (HWY_UNLIKELY(mesh.kind != PrimitiveKind::kTriangle)) {
-    return find_in_round(mesh, instance, bundle, rays, nearest);
+    return is_round(mesh.kind) ? find_in_round(mesh, instance, bundle, rays, nearest)
+                               : find_in_moving(mesh, instance, bundle, rays, nearest);
   }
   std::uint32_t all_found = 0;
   const auto visit = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
@@ -149,13 +176,11 @@ HWY_INLINE void intersect_together(const SceneView& scene, WorldBundle& bundle, 
   std::uint32_t rays = prepare(bundle, count);
   if (rays == 0 || scene.tree.node_count == 0) return;
   const auto visit = [&](std::uint32_t entry, std::uint32_t active) HWY_ATTR {
-    const std::uint32_t index = scene.leaf2instance[entry];
-    const InstanceView& instance = scene.instances[index];
-    active = seeing(instance, bundle, active);
-    if (active == 0) return 0u;
     LocalBundle local;
-    active = enter(instance, index, bundle, active, local);
-    return find_in_mesh(scene.meshes[instance.mesh], index, local, active, nearest);
+    std::uint32_t index;
+    active = enter_leaf(scene, entry, bundle, active, local, index);
+    if (active == 0) return 0u;
+    return find_in_mesh(scene.meshes[scene.instances[index].mesh], index, local, active, nearest);
   };
   const auto address = [&](std::uint32_t child) HWY_ATTR -> const void* {
     return scene.tree.nodes + (child & Waiting::kLeaf ? 0 : child);
@@ -179,6 +204,7 @@ void intersect(const SceneView& scene, const RaySpan& rays, Hit* hits) {
       hn::Store(ray, di, at.ray);
       hn::Store(ray, di, at.point);
       load_rays(rays, at, bundle, k);
+      if (scene.moves) load_times(rays, at, bundle, k);
     }
     join_masks(rays, bundle, now);
     Nearest nearest;

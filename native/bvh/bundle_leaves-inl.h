@@ -14,23 +14,48 @@ struct LocalBundle {
   BundleSlab slab;
   BundleShear shear;
   std::int32_t self[kBundle];  ///< primitive of the instance that is never hit, or kNone
+  const float* time;           ///< where the scene moves
 
   /// Ray i as the triangle test takes it.
   LocalRay ray(std::uint32_t i) const {
     LocalRay local;
-    for (int axis = 0; axis < 3; ++axis) {
-      const bool backward = slab.side[axis][i] != 0;
-      const float lower = -slab.minus_from_lower[axis][i], upper = slab.from_upper[axis][i];
-      local.slab.near_origin[axis] = backward ? upper : lower;
-      local.slab.far_origin[axis] = backward ? lower : upper;
-      local.slab.inverse[axis] = backward ? -slab.inverse[axis][i] : slab.inverse[axis][i];
-    }
+    local.slab = slab_ray(slab, i);
     local.shear = make_shear_ray(Vec3(rays.o[0][i], rays.o[1][i], rays.o[2][i]),
                                  Vec3(rays.d[0][i], rays.d[1][i], rays.d[2][i]));
     local.range = Interval{slab.begin[i], -slab.minus_end[i]};
     local.t_min = rays.t_min[i];
     local.t_max = rays.t_max[i];
     return local;
+  }
+
+  /// The reverse: ray i as it has been taken into the instance alone, and its shear ray.
+  void put(std::uint32_t i, const LocalRay& local, const Vec3& direction) {
+    const ShearRay& from = local.shear;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float inverse = local.slab.inverse[axis];
+      const float near = local.slab.near_origin[axis], far = local.slab.far_origin[axis];
+      const bool backward = inverse < 0.0f;
+      rays.o[axis][i] = from.origin[axis];
+      rays.d[axis][i] = direction[axis];
+      slab.minus_from_lower[axis][i] = -(backward ? far : near);
+      slab.from_upper[axis][i] = backward ? near : far;
+      slab.inverse[axis][i] = backward ? -inverse : inverse;
+      slab.side[axis][i] = backward ? 1 : 0;
+      if (backward) slab.backward[axis] |= 1u << i;
+    }
+    slab.begin[i] = local.range.begin;
+    slab.minus_end[i] = -local.range.end;
+    rays.t_min[i] = local.t_min;
+    rays.t_max[i] = local.t_max;
+    shear.x[i] = from.x;
+    shear.y[i] = from.y;
+    shear.z[i] = from.z;
+    shear.sx[i] = from.sx;
+    shear.sy[i] = from.sy;
+    shear.sz[i] = from.sz;
+    shear.o[0][i] = from.origin[from.x];
+    shear.o[1][i] = from.origin[from.y];
+    shear.o[2][i] = from.origin[from.z];
   }
 };
 

@@ -35,6 +35,19 @@ struct BundleSlab {
   std::uint32_t backward[3] = {};           ///< rays of `side` 1, a bit each
 };
 
+/// That of ray i.
+inline SlabRay slab_ray(const BundleSlab& slab, std::uint32_t i) {
+  SlabRay ray;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool backward = slab.side[axis][i] != 0;
+    const float lower = -slab.minus_from_lower[axis][i], upper = slab.from_upper[axis][i];
+    ray.near_origin[axis] = backward ? upper : lower;
+    ray.far_origin[axis] = backward ? lower : upper;
+    ray.inverse[axis] = backward ? -slab.inverse[axis][i] : slab.inverse[axis][i];
+  }
+  return ray;
+}
+
 template <class Mask>
 HWY_INLINE std::uint32_t lane_bits(const Mask& mask, std::uint32_t first) {
   std::uint8_t bytes[8] = {};

@@ -58,6 +58,12 @@ HWY_INLINE void load_shared(const Rays& from, const Places& at, WorldBundle& to,
   fetch(from.self_primitive, at.point, to.self_primitive + k);
 }
 
+/// The times of rays, in places k…k + kRayLanes − 1 of a bundle.
+template <class Rays>
+HWY_INLINE void load_times(const Rays& from, const Places& at, WorldBundle& to, std::uint32_t k) {
+  for (std::uint32_t i = 0; i < kRayLanes; ++i) to.time[k + i] = from.time[at.point[i]];
+}
+
 /// Into places k…k + kRayLanes − 1 of a bundle.
 HWY_INLINE void load_rays(const RaySpan& from, const Places& at, WorldBundle& to, std::uint32_t k) {
   load_shared(from, at, to, k);
@@ -142,6 +148,7 @@ HWY_NOINLINE void occluded_listed(const SceneView& scene, const Rays& rays, std:
     hn::Store(hn::Add(place, hn::Set(di, static_cast<std::int32_t>(first))), di, at.ray);
     find_places(rays, at.ray);
     load_rays(rays, at, bundle, k);
+    if (scene.moves) load_times(rays, at, bundle, k);
   }
   join_masks(rays, bundle, count);
   for (std::uint32_t found = occluded_together(scene, bundle, count, turn); found != 0;
@@ -174,7 +181,7 @@ HWY_INLINE void occluded_octant(const SceneView& scene, const Rays& rays, std::u
   };
   for (std::uint32_t begin = 0; begin < size; begin += kBundle) {
     const std::uint32_t now = size - begin < kBundle ? size - begin : kBundle;
-    Turn turn{blockers, true, scene.instance_count == 1};
+    Turn turn{blockers, true, is_alone(scene)};
     occluded_listed(scene, rays, first, list + begin, now, point, turn, bits);
     for (std::uint32_t left = turn.put_off; left != 0; left &= left - 1) {
       waiting[waiting_count++] = list[begin + static_cast<std::uint32_t>(__builtin_ctz(left))];

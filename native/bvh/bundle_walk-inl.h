@@ -106,11 +106,34 @@ HWY_NOINLINE std::uint32_t walk_round(const MeshView& mesh, std::uint32_t instan
   return found;
 }
 
+/// Rays of `bundle` that a mesh that deforms blocks.
+HWY_NOINLINE std::uint32_t walk_moving(const MeshView& mesh, std::uint32_t instance,
+                                       const LocalBundle& bundle, std::uint32_t rays) {
+  const MovingRays moving(mesh, bundle, rays);
+  Closest any;
+  std::uint32_t found = 0;
+  while (rays != 0) {
+    const TimeTree* tree;
+    const std::uint32_t now = same_octant(bundle.slab, moving.same_time(rays, tree));
+    const auto visit = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
+      return moving.meet(mesh, instance, tree->leaf2triangle[leaf], active,
+                         [&](std::uint32_t) { return &any; });
+    };
+    const auto address = [&](std::uint32_t child) HWY_ATTR { return moving_child(*tree, child); };
+    const WalkingRays walking(bundle.slab, now);
+    const Reach reach(walking, bundle.rays, now);
+    found |= walk_bundle(tree->tree, walking, reach, now, visit, address);
+    rays &= ~now;
+  }
+  return found;
+}
+
 /// Rays of `bundle` that a mesh blocks.
 HWY_INLINE std::uint32_t walk_mesh(const MeshView& mesh, std::uint32_t instance,
                                    const LocalBundle& bundle, std::uint32_t rays, Turn& turn) {
   if (HWY_UNLIKELY(mesh.kind != PrimitiveKind::kTriangle)) {
-    return walk_round(mesh, instance, bundle, rays);
+    return is_round(mesh.kind) ? walk_round(mesh, instance, bundle, rays)
+                               : walk_moving(mesh, instance, bundle, rays);
   }
   const auto test = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
     const std::byte* record = mesh.clusters + std::size_t{leaf} * kClusterUnit;
@@ -159,6 +182,7 @@ struct WorldBundle {
   Bundle rays;
   BundleSlab slab;
   std::uint32_t self_instance[kBundle], self_primitive[kBundle], mask[kBundle];
+  float time[kBundle];                   ///< where the scene moves
   std::uint32_t some_mask, common_mask;  ///< of all rays: bits that any has, bits that each has
 };
 
@@ -167,6 +191,7 @@ HWY_INLINE std::uint32_t enter(const InstanceView& instance, std::uint32_t index
                                const WorldBundle& bundle, std::uint32_t rays, LocalBundle& local) {
   const RayTag d;
   const Mat3& m = instance.local_from_world;
+  const Vec3 own_error = local_error(instance);
   // product() of core/local_ray.h
   const auto image = [&](const RayVec* v, int axis) HWY_ATTR {
     const RayVec sum =
@@ -197,7 +222,7 @@ HWY_INLINE std::uint32_t enter(const InstanceView& instance, std::uint32_t index
     const RayVec largest = hn::Mul(largest_of(origin[0], origin[1], origin[2]), padding);
     for (int axis = 0; axis < 3; ++axis) {
       const RayVec error =
-          hn::Add(hn::Mul(spread(offset, axis), padding), hn::Set(d, instance.local_error[axis]));
+          hn::Add(hn::Mul(spread(offset, axis), padding), hn::Set(d, own_error[axis]));
       shift[axis] = hn::Add(error, largest);
     }
     hn::Store(hn::Load(d, bundle.rays.t_min + i), d, local.rays.t_min + i);
@@ -225,15 +250,61 @@ HWY_INLINE std::uint32_t seeing(const InstanceView& instance, const WorldBundle&
   return rays;
 }
 
-/// Those of `rays` that an instance blocks.
-HWY_INLINE std::uint32_t visit_instance(const SceneView& scene, std::uint32_t index,
+/// enter_group for those of `bundle` whose bit is set, each in the space of its own time.
+HWY_NOINLINE std::uint32_t enter_moving(const SceneView& scene, const MotionGroup& group,
+                                        const WorldBundle& bundle, std::uint32_t rays,
+                                        LocalBundle& local) {
+  std::uint32_t entered = 0;
+  for (; rays != 0; rays &= rays - 1) {
+    const auto i = static_cast<std::uint32_t>(__builtin_ctz(rays));
+    Ray ray;
+    ray.origin = Vec3(bundle.rays.o[0][i], bundle.rays.o[1][i], bundle.rays.o[2][i]);
+    ray.direction = Vec3(bundle.rays.d[0][i], bundle.rays.d[1][i], bundle.rays.d[2][i]);
+    ray.t_min = bundle.rays.t_min[i];
+    ray.t_max = bundle.rays.t_max[i];
+    ray.time = bundle.time[i];
+    ray.mask = bundle.mask[i];
+    InstanceView at;
+    LocalRay in;
+    if (!enter_group(scene, group, ray, slab_ray(bundle.slab, i), &at, &in)) continue;
+    local.put(i, in, local_direction(at, ray));
+    const bool here = bundle.self_instance[i] == group.instance;
+    local.self[i] = static_cast<std::int32_t>(here ? bundle.self_primitive[i] : kNone);
+    entered |= 1u << i;
+  }
+  return entered;
+}
+
+/// Takes rays into what a leaf of the tree over instances stands for; those that can hit anything
+/// there.
+/// @param index  becomes the instance's
+HWY_INLINE std::uint32_t enter_leaf(const SceneView& scene, std::uint32_t leaf,
+                                    const WorldBundle& bundle, std::uint32_t rays,
+                                    LocalBundle& local, std::uint32_t& index) {
+  index = scene.leaf2instance[leaf];
+  local.time = bundle.time;
+  if (HWY_UNLIKELY(index >= scene.instance_count)) {
+    const MotionGroup& group = scene.motion_groups[index - scene.instance_count];
+    index = group.instance;
+    return enter_moving(scene, group, bundle, rays, local);
+  }
+  rays = seeing(scene.instances[index], bundle, rays);
+  return rays == 0 ? 0 : enter(scene.instances[index], index, bundle, rays, local);
+}
+
+/// Those of `rays` that what stands behind a leaf blocks.
+HWY_INLINE std::uint32_t visit_instance(const SceneView& scene, std::uint32_t leaf,
                                         const WorldBundle& bundle, std::uint32_t rays, Turn& turn) {
-  const InstanceView& instance = scene.instances[index];
-  rays = seeing(instance, bundle, rays);
-  if (rays == 0) return 0;
   LocalBundle local;
-  rays = enter(instance, index, bundle, rays, local);
-  return rays == 0 ? 0 : walk_mesh(scene.meshes[instance.mesh], index, local, rays, turn);
+  std::uint32_t index;
+  rays = enter_leaf(scene, leaf, bundle, rays, local, index);
+  if (rays == 0) return 0;
+  return walk_mesh(scene.meshes[scene.instances[index].mesh], index, local, rays, turn);
+}
+
+/// One instance that stands still is all there is.
+HWY_INLINE bool is_alone(const SceneView& scene) {
+  return scene.instance_count == 1 && scene.motion_group_count == 0;
 }
 
 /// Makes the first `count` rays of `bundle` ready for the tree over instances; those that can hit
@@ -259,11 +330,10 @@ HWY_INLINE std::uint32_t occluded_together(const SceneView& scene, WorldBundle& 
                                            std::uint32_t count, Turn& turn) {
   std::uint32_t rays = prepare(bundle, count);
   if (rays == 0 || scene.tree.node_count == 0) return 0;
-  const auto visit = [&](std::uint32_t entry, std::uint32_t active) HWY_ATTR {
-    return visit_instance(scene, scene.leaf2instance[entry], bundle, active, turn);
-  };
+  const auto visit = [&](std::uint32_t entry, std::uint32_t active)
+                         HWY_ATTR { return visit_instance(scene, entry, bundle, active, turn); };
   // One instance alone needs no tree: entering it looks at its box anyway.
-  if (scene.instance_count == 1) return visit(0, rays);
+  if (is_alone(scene)) return visit(0, rays);
   const auto address = [&](std::uint32_t child) HWY_ATTR -> const void* {
     return scene.tree.nodes + (child & Waiting::kLeaf ? 0 : child);
   };

@@ -44,17 +44,6 @@ Aabb instance_bounds(const InstanceView& instance, const Aabb& local_bounds) {
 
 void place_instance(InstanceView& instance, const Aabb& local_bounds) {
   instance.world_bounds = instance_bounds(instance, local_bounds);
-  instance.local_error = Vec3(0.0f);
-  if (instance.world_bounds.is_empty()) return;
-  // The direction's error acts over the length of the ray, which up to a hit is at most the ray
-  // origin's distance from `position` (bounded per ray) and that of the hit from it (here).
-  const Aabb& box = instance.world_bounds;
-  Vec3 reach;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float p = instance.position[axis];
-    reach[axis] = max_of(std::abs(box.lo[axis] - p), std::abs(box.hi[axis] - p));
-  }
-  instance.local_error = product(absolute(instance.local_from_world), reach) * kPadding;
 }
 
 InstanceTree build_instance_tree(std::span<const Aabb> world_boxes, Builder builder,

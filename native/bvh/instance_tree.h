@@ -29,7 +29,7 @@ struct InstanceTree {
 /// is never hit.
 Aabb instance_bounds(const InstanceView& instance, const Aabb& local_bounds);
 
-/// Stores the instance's world_bounds and local_error. To be called once everything else in the
+/// Stores the instance's world_bounds. To be called once everything else in the
 /// instance is known and before the tree over the instances is built.
 void place_instance(InstanceView& instance, const Aabb& local_bounds);
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "bvh/closest.h"
+#include "bvh/moving_leaf.h"
 #include "bvh/round_leaf.h"
 #include "bvh/topology.h"
 #include "bvh/wide_node.h"
+#include "core/instance_motion.h"
 
 namespace komorebi {
 
@@ -61,6 +63,21 @@ bool trace_round(const MeshView& mesh, std::uint32_t instance, const LocalRay& l
   return walk(mesh.tree, local.slab, local.range, closest->limit, visit);
 }
 
+/// The same of a mesh that deforms.
+template <bool kAny>
+bool trace_moving(const MeshView& mesh, std::uint32_t instance, const LocalRay& local,
+                  const Ray& ray, Closest* closest) {
+  const TimeTree& tree = tree_at(mesh, ray.time);
+  const SetPlace place = set_place(mesh.position_sets, ray.time);
+  const std::uint32_t self = instance == ray.self_instance ? ray.self_primitive : kNone;
+  const auto visit = [&](std::uint32_t leaf) {
+    const bool found =
+        test_moving_triangle(mesh, local, place, self, instance, tree.leaf2triangle[leaf], closest);
+    return kAny && found;
+  };
+  return walk(tree.tree, local.slab, local.range, closest->limit, visit);
+}
+
 /// Closest (or any) hit of one ray through both levels of trees.
 template <bool kAny, class Filter>
 Hit trace_scalar(const SceneView& scene, const Ray& ray, const Filter& filter) {
@@ -68,11 +85,22 @@ Hit trace_scalar(const SceneView& scene, const Ray& ray, const Filter& filter) {
   const SlabRay world = make_world_slab(ray);
   if (!is_usable(world)) return closest.hit;
   const auto visit_instance = [&](std::uint32_t entry) {
-    const std::uint32_t index = scene.leaf2instance[entry];
-    const InstanceView& instance = scene.instances[index];
+    std::uint32_t index = scene.leaf2instance[entry];
+    InstanceView moved;
     LocalRay local;
-    if (!enter_instance(instance, ray, world, &local)) return false;
+    if (index >= scene.instance_count) {
+      const MotionGroup& group = scene.motion_groups[index - scene.instance_count];
+      if (!enter_group(scene, group, ray, world, &moved, &local)) return false;
+      index = group.instance;
+    } else if (!enter_instance(scene.instances[index], ray, world, &local)) {
+      return false;
+    }
+    const InstanceView& instance =
+        scene.instances[index].motion == kNoMotion ? scene.instances[index] : moved;
     const MeshView& mesh = scene.meshes[instance.mesh];
+    if (mesh.kind == PrimitiveKind::kMovingTriangle) {
+      return trace_moving<kAny>(mesh, index, local, ray, &closest);
+    }
     if (mesh.kind != PrimitiveKind::kTriangle) {
       return trace_round<kAny>(mesh, index, local, local_direction(instance, ray), ray, &closest);
     }

@@ -2,10 +2,12 @@
 // file again for each, with other compiler options.
 #include "bvh/closest.h"
 #include "bvh/kernel.h"
+#include "bvh/moving_leaf.h"
 #include "bvh/pack_table.h"
 #include "bvh/round_leaf.h"
 #include "bvh/simd_targets.h"
 #include "bvh/traverse_scalar.h"
+#include "core/instance_motion.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bvh/traverse_simd.cpp"
@@ -20,6 +22,7 @@
 #include "bvh/bundle_leaves-inl.h"
 #include "bvh/bundle_cluster-inl.h"
 #include "bvh/bundle_round-inl.h"
+#include "bvh/bundle_moving-inl.h"
 #include "bvh/bundle_walk-inl.h"
 #include "bvh/bundle_sort-inl.h"
 #include "bvh/bundle_closest-inl.h"

@@ -71,7 +71,7 @@ int render(const CliOptions& options) {
   const Cancel never;
   DumpedRender dumped = read_dump(options.scene, pool, never);
   const Settings settings = chosen(dumped.settings, options);
-  dumped.scene->commit(pool, never);
+  dumped.scene->commit(pool, never, false);
   std::printf("%llu triangles, %u instances, %.1f MB\n",
               static_cast<unsigned long long>(dumped.scene->triangle_count()),
               dumped.scene->instance_count(),

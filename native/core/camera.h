@@ -3,13 +3,35 @@
 #include <cmath>
 
 #include "core/lens.h"
+#include "core/motion.h"
 #include "core/panorama.h"
 #include "core/ray.h"
+#include "core/shutter.h"
 #include "core/spherical_stereo.h"
 
 namespace komorebi {
 
 enum class CameraKind : std::uint32_t { kPerspective = 0, kOrthographic = 1, kPanorama = 2 };
+
+/// How a camera moves while its shutter is open: rays of the rest pose, at time 1/2, go through the
+/// camera's own space to its pose at their time. Made by CameraTables (render/camera.h).
+struct CameraMotionView {
+  const MotionPose* poses = nullptr;  ///< at even times, without scale; null: it stands still
+  std::uint32_t pose_count = 0;
+  Mat3d camera_from_world{1.0};  ///< at rest, around rest_position
+  Vec3d rest_position{0.0};
+  Vec3d axis{0.0};  ///< per unit of depth, along the camera's axis
+  /// How much wider the view is than at rest when the shutter opens and closes; perspective alone.
+  double zoom_open = 1.0, zoom_close = 1.0;
+
+  bool zooms() const { return zoom_open != 1.0 || zoom_close != 1.0; }
+  bool moves() const { return poses != nullptr || zooms(); }
+  /// As Cycles has it: linear on either side of the rest.
+  double zoom_at(double time) const {
+    return time < 0.5 ? zoom_open + 2.0 * time * (1.0 - zoom_open)
+                      : 1.0 + (2.0 * time - 1.0) * (zoom_close - 1.0);
+  }
+};
 
 /// A camera, worked out in double by make_camera (render/camera.h): the inverse of a 4×4
 /// clip-from-world matrix, or a panorama's projection and pose; a lens; an eye of a stereo pair.
@@ -35,6 +57,9 @@ struct CameraView {
   PanoramaView panorama;         ///< of a panorama, as is the next
   Mat3d world_from_camera{1.0};  ///< its axes: right, up, back
   SphericalStereoView stereo;
+
+  ShutterView shutter;
+  CameraMotionView motion;  ///< all of the above is at rest
 };
 
 /// A camera ray before it is rounded: origin on the near clip, unit direction, length.
@@ -49,10 +74,17 @@ inline Vec3d unit(const Vec3d& v) {
   return v / std::sqrt(glm::dot(v, v));
 }
 
+/// What moves the rays of a camera that stands still.
+struct Stay {
+  void operator()(Vec3d&, Vec3d&) const {}
+};
+
 /// Through a point of the opening to where the pinhole's ray is sharp. Distances along the ray are
 /// Cycles': of a perspective camera those of the pinhole's ray to the clip planes.
+/// @param move  takes origin and unit direction from the rest pose to that of the ray's time
+template <class Move>
 inline CameraRay lens_ray(const CameraView& camera, const Vec3d& eye, const Vec3d& along,
-                          const Vec2& lens_uv) {
+                          const Vec2& lens_uv, const Move& move) {
   const bool orthographic = camera.kind == CameraKind::kOrthographic;
   const double length = std::sqrt(glm::dot(along, along));
   Vec3d origin = eye, direction = along;
@@ -65,6 +97,7 @@ inline CameraRay lens_ray(const CameraView& camera, const Vec3d& eye, const Vec3
   }
   const double bent = std::sqrt(glm::dot(direction, direction));
   direction /= bent;
+  move(origin, direction);
   if (camera.stereo.eye != 0.0) {
     turn_to_eye(camera.stereo, Vec3d(0.0, 0.0, 1.0), origin, direction);
   }
@@ -108,29 +141,65 @@ inline CameraRay panorama_ray(const CameraView& camera, double x, double y, cons
 
 }  // namespace detail
 
-/// The ray at a point of the film, given from the middle of the picture.
-inline CameraRay film_ray(const CameraView& camera, double x, double y, const Vec2& lens_uv) {
-  if (camera.kind == CameraKind::kPanorama) return detail::panorama_ray(camera, x, y, lens_uv);
+namespace detail {
+
+/// @param zoom  how much wider than at rest the view is, around the camera's axis
+/// @param move  as lens_ray has it
+template <class Move>
+inline CameraRay film_ray(const CameraView& camera, double x, double y, const Vec2& lens_uv,
+                          double zoom, const Move& move) {
+  if (camera.kind == CameraKind::kPanorama) {
+    CameraRay ray = panorama_ray(camera, x, y, lens_uv);
+    move(ray.origin, ray.direction);
+    return ray;
+  }
   const Vec3d shift = x * camera.per_x + y * camera.per_y;
   const bool orthographic = camera.kind == CameraKind::kOrthographic;
   const Vec3d eye = orthographic ? camera.origin + shift : camera.origin;
-  const Vec3d along = orthographic ? camera.direction : camera.direction + shift;
+  Vec3d along = orthographic ? camera.direction : camera.direction + shift;
+  if (zoom != 1.0) along = camera.motion.axis + zoom * (along - camera.motion.axis);
   if (camera.has_lens || camera.stereo.eye != 0.0) {
-    return detail::lens_ray(camera, eye, along, lens_uv);
+    return lens_ray(camera, eye, along, lens_uv, move);
   }
   const double length = std::sqrt(glm::dot(along, along));  // distance per unit of depth
-  return {eye + camera.clip_start * along, along / length,
-          (camera.clip_end - camera.clip_start) * length};
+  CameraRay ray{eye + camera.clip_start * along, along / length,
+                (camera.clip_end - camera.clip_start) * length};
+  move(ray.origin, ray.direction);
+  return ray;
+}
+
+}  // namespace detail
+
+/// The ray at a point of the film, given from the middle of the picture, of the camera at rest.
+inline CameraRay film_ray(const CameraView& camera, double x, double y, const Vec2& lens_uv) {
+  return detail::film_ray(camera, x, y, lens_uv, 1.0, detail::Stay());
+}
+
+/// The same at a time in [0, 1].
+inline CameraRay film_ray(const CameraView& camera, double x, double y, const Vec2& lens_uv,
+                          double time) {
+  const CameraMotionView& motion = camera.motion;
+  if (!motion.moves()) return film_ray(camera, x, y, lens_uv);
+  const double zoom = motion.zoom_at(time);
+  if (motion.poses == nullptr) {
+    return detail::film_ray(camera, x, y, lens_uv, zoom, detail::Stay());
+  }
+  const AffineMap pose = pose_at(motion.poses, motion.pose_count, time);
+  return detail::film_ray(camera, x, y, lens_uv, zoom, [&](Vec3d& origin, Vec3d& direction) {
+    origin = pose.linear * (motion.camera_from_world * (origin - motion.rest_position)) +
+             pose.translation;
+    direction = detail::unit(pose.linear * (motion.camera_from_world * direction));
+  });
 }
 
 /// The ray at a point of the film: it starts on the near clip plane, has unit direction and ends on
 /// the far clip plane (of a panorama: sphere). `lens_uv` in [0,1)² chooses the point of the lens;
-/// `time` is stored in the ray. Outside a panorama's circle there is no ray: see has_ray.
+/// `time` in [0, 1] is stored in the ray. Outside a panorama's circle there is no ray: see has_ray.
 inline Ray camera_ray(const CameraView& camera, const Vec2& film_xy, const Vec2& lens_uv,
                       float time) {
   const double x = static_cast<double>(film_xy.x) - camera.film_center_x;
   const double y = static_cast<double>(film_xy.y) - camera.film_center_y;
-  const CameraRay exact = film_ray(camera, x, y, lens_uv);
+  const CameraRay exact = film_ray(camera, x, y, lens_uv, static_cast<double>(time));
   Ray ray;
   ray.origin = Vec3(exact.origin);
   ray.direction = Vec3(exact.direction);
@@ -148,7 +217,8 @@ inline bool has_ray(float t_max) {
 }
 
 /// Depth of a point (relative to the scene's origin), as Cycles writes it to the depth pass: along
-/// the camera's axis, from the camera, whatever the clip distances; of a panorama the distance.
+/// the camera's axis at rest, from the camera, whatever the clip distances; of a panorama the
+/// distance.
 inline float camera_depth(const CameraView& camera, const Vec3& world_point) {
   const Vec3d from_eye = Vec3d(world_point) - camera.origin;
   if (camera.kind == CameraKind::kPanorama) {

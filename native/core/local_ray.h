@@ -38,13 +38,25 @@ inline Vec3 local_direction(const InstanceView& instance, const Ray& ray) {
   return product(instance.local_from_world, ray.direction);
 }
 
+/// Rounding of the way into local space per axis, the ray origin's part apart: the direction's
+/// error acts over the length of the ray, which up to a hit is at most the ray origin's distance
+/// from `position` (bounded per ray) and that of the hit from it (here).
+inline Vec3 local_error(const InstanceView& instance) {
+  const Aabb& box = instance.world_bounds;
+  const Vec3 to_lower = absolute(box.lo - instance.position);
+  const Vec3 to_upper = absolute(box.hi - instance.position);
+  const Vec3 reach(max_of(to_lower.x, to_upper.x), max_of(to_lower.y, to_upper.y),
+                   max_of(to_lower.z, to_upper.z));
+  return product(absolute(instance.local_from_world), reach) * kPadding;
+}
+
 /// Takes a ray into an instance; false if the instance cannot be hit by it: no common mask bit, or
 /// the ray misses its world box (its own box, not a node's, so that the tree over the instances
 /// decides nothing).
 ///
 /// The local origin carries the rounding of M·(o − p), bounded per axis by |M|·|o − p|, so that
 /// also a flattened or sheared instance's boxes are conservative for the true ray; the direction's
-/// part of the error is bounded through the instance's extent (InstanceView::local_error).
+/// part of the error is bounded through the instance's extent (local_error).
 inline bool enter_instance(const InstanceView& instance, const Ray& ray, const SlabRay& world,
                            LocalRay* local) {
   if ((instance.mask & ray.mask) == 0) return false;
@@ -55,7 +67,7 @@ inline bool enter_instance(const InstanceView& instance, const Ray& ray, const S
   const Vec3 origin = product(instance.local_from_world, offset);
   const Vec3 direction = local_direction(instance, ray);
   const Vec3 spread = product(absolute(instance.local_from_world), absolute(offset));
-  const Vec3 error = spread * kPadding + instance.local_error;
+  const Vec3 error = spread * kPadding + local_error(instance);
   const Vec3 shift = error + Vec3(max_abs(origin) * kPadding);
   local->slab = make_slab_ray(origin, direction, shift);
   if (!is_usable(local->slab)) return false;

@@ -10,8 +10,9 @@ enum RayMask : std::uint32_t {
   kMaskDiffuse = 1u << 1,
   kMaskShadow = 1u << 2,
   kMaskRays = kMaskCamera | kMaskDiffuse | kMaskShadow,
-  /// The same bits, so far up, are for rays that see shadow catchers alone (as Cycles).
-  kMaskCatcherShift = 16,
+  /// The same bits, so far up (an instance keeps eight), are for rays that see shadow catchers
+  /// alone (as Cycles).
+  kMaskCatcherShift = 3,
   kMaskAll = 0xffffffffu,
 };
 

@@ -8,7 +8,12 @@
 namespace komorebi {
 
 /// What a mesh's primitives are; all come behind the same records.
-enum class PrimitiveKind : std::uint32_t { kTriangle = 0, kCurve = 1, kSphere = 2 };
+enum class PrimitiveKind : std::uint32_t {
+  kTriangle = 0,
+  kCurve = 1,
+  kSphere = 2,
+  kMovingTriangle = 3,  ///< of a mesh that deforms: core/moving_triangle.h
+};
 
 /// What a curve looks like: flat and turned to every ray, or round (core/curve.h).
 enum class CurveShape : std::uint32_t { kRibbon = 0, kThick = 1 };
@@ -43,6 +48,12 @@ struct TreeView {
   std::uint32_t depth = 0;  ///< of the wide tree; bounds the traversal stack
 };
 
+/// A deforming mesh's tree for some of the shutter's time (bvh/moving_tree.h).
+struct TimeTree {
+  TreeView tree;
+  const std::uint32_t* leaf2triangle = nullptr;
+};
+
 /// One mesh as the tracer and the shading read it; spans into memory that Mesh owns.
 /// Local space is Blender's object space moved by the mesh's own origin (render/mesh.h).
 struct MeshView {
@@ -50,10 +61,12 @@ struct MeshView {
   std::uint32_t opaque = 1;  ///< 1: no leaf filter is ever needed
   std::uint32_t triangle_count = 0;
   std::uint32_t vertex_count = 0;
-  std::uint32_t position_sets = 1;         ///< 1 = still; n sets of vertex_count positions in time
-  const float* vtx2xyz = nullptr;          ///< [position_sets][vertex_count][3]
+  std::uint32_t position_sets = 1;  ///< 1 = still; n sets of vertex_count positions at even times
+  const float* vtx2xyz = nullptr;   ///< [position_sets][vertex_count][3]
   const std::uint32_t* tri2vtx = nullptr;  ///< [triangle_count][3]
-  const float* normals = nullptr;          ///< [by vertex or by corner][3], unit; null: all flat
+  std::uint32_t normal_sets = 1;           ///< 1: the same at all times
+  std::uint32_t normal_count = 0;          ///< of a set
+  const float* normals = nullptr;  ///< [normal_sets][by vertex or by corner][3]; null: all flat
   const std::uint32_t* tri2normal = nullptr;    ///< [triangle_count][3], rows of `normals`
   const std::uint8_t* tri2smooth = nullptr;     ///< [triangle_count]; null: all smooth if `normals`
   const std::uint16_t* tri2material = nullptr;  ///< [triangle_count]; null: all slot 0
@@ -61,7 +74,9 @@ struct MeshView {
   const AttributeView* attributes = nullptr;
   std::uint32_t attribute_count = 0;
   TreeView tree;
-  const std::byte* clusters = nullptr;  ///< leaves of the tree: bvh/triangle_cluster.h
+  const std::byte* clusters = nullptr;   ///< leaves of the tree: bvh/triangle_cluster.h
+  const TimeTree* time_trees = nullptr;  ///< of a mesh that deforms, in place of the other
+  std::uint32_t time_tree_count = 0;
   // Curves and spheres instead of triangles; primitives are segments (of all curves), or points.
   CurveShape shape = CurveShape::kRibbon;
   std::uint32_t pieces = 1;                    ///< of a segment
@@ -74,24 +89,52 @@ struct MeshView {
   LeafGrid leaf_grid;
 };
 
-/// One instance of a mesh.  world = world_from_local · local + position
-/// and local = local_from_world · (world − position); the difference first, so that distance from
-/// the scene's origin costs no precision.
-struct InstanceView {
-  Mat3 local_from_world{1.0f};
+/// A moving instance at the end of a segment of its time; in between everything is linear.
+struct MotionKey {
   Mat3 world_from_local{1.0f};
   Vec3 position{0.0f};
-  std::uint32_t mesh = 0;
-  std::uint32_t mask = kMaskAll;      ///< RayMask bits that see it
-  std::uint32_t flags = 0;            ///< InstanceFlag bits
-  std::uint32_t object_index = 0;     ///< which Blender object it came from
-  std::uint32_t material_slots = 0;   ///< which list of slots (render/scene_tables.h)
-  std::uint32_t transform_count = 1;  ///< 1 = still; n transforms in time, from first_transform
-  std::uint32_t first_transform = kNone;
-  // Filled by place_instance() (bvh/instance_tree.h) when all of the above is known:
-  Aabb world_bounds;       ///< conservative for the traced ray; empty: the instance is never hit
-  Vec3 local_error{0.0f};  ///< rounding of the way into local space, per axis, origin's part apart
+  Aabb world_bounds;  ///< of the segment that begins here; nobody asks for that of the last key
 };
+
+/// Keys of a moving instance, at even times over the shutter.
+struct InstanceMotion {
+  std::uint32_t first_key = 0;
+  std::uint32_t key_count = 0;  ///< at least 2
+};
+
+/// Some of a moving instance's segments, which are a leaf of the tree over instances.
+struct MotionGroup {
+  std::uint32_t instance = 0;
+  std::uint32_t first_segment = 0, end_segment = 0;
+};
+
+inline constexpr std::uint32_t kNoMotion = (1u << 22) - 1;  ///< the instance stands still
+
+/// One instance of a mesh.  world = world_from_local · local + position
+/// and local = local_from_world · (world − position); the difference first, so that distance from
+/// the scene's origin costs no precision. One that moves is here as it is at rest, but for its box,
+/// which is that of all its time: see instance_at (core/instance_motion.h).
+///
+/// Scenes have millions of these: what can be had from the rest in a few steps is not kept.
+struct InstanceView {
+  Mat3 local_from_world{1.0f};
+  Vec3 position{0.0f};
+  std::uint32_t mesh = 0;
+  std::uint32_t mask : 8 = 0xff;          ///< RayMask bits that see it
+  std::uint32_t flags : 2 = 0;            ///< InstanceFlag bits
+  std::uint32_t motion : 22 = kNoMotion;  ///< which entry of SceneView::motions
+  std::uint32_t object_index = 0;         ///< which Blender object it came from
+  /// Filled by place_instance() (bvh/instance_tree.h) when matrix and position are known.
+  /// Conservative for the traced ray; empty: the instance is never hit.
+  Aabb world_bounds;
+  Mat3 world_from_local{1.0f};
+  std::uint32_t material_slots = 0;  ///< which list of slots (render/scene_tables.h)
+};
+static_assert(sizeof(InstanceView) == 124);
+
+inline bool is_round(PrimitiveKind kind) {
+  return kind == PrimitiveKind::kCurve || kind == PrimitiveKind::kSphere;
+}
 
 /// A committed scene, as plain pointers and counts: what kernels get.
 struct SceneView {
@@ -99,8 +142,14 @@ struct SceneView {
   std::uint32_t mesh_count = 0;
   const InstanceView* instances = nullptr;
   std::uint32_t instance_count = 0;
-  TreeView tree;                                 ///< over instances
-  const std::uint32_t* leaf2instance = nullptr;  ///< leaves of `tree` are ranges in here
+  TreeView tree;  ///< over instances
+  /// What leaves of `tree` are: an instance, or instance_count + an entry of motion_groups.
+  const std::uint32_t* leaf2instance = nullptr;
+  const InstanceMotion* motions = nullptr;
+  const MotionKey* motion_keys = nullptr;
+  const MotionGroup* motion_groups = nullptr;
+  std::uint32_t motion_group_count = 0;
+  bool moves = false;  ///< whether any hit depends on the ray's time
 };
 
 }  // namespace komorebi

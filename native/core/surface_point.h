@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "core/instance_motion.h"
 #include "core/local_ray.h"
+#include "core/moving_triangle.h"
 #include "core/round_surface.h"
 #include "core/scene_view.h"
 
@@ -33,9 +35,17 @@ inline Vec3 unit_or(const Vec3& v, const Vec3& fallback) {
   return s / std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z);
 }
 
-inline Vec3 vertex(const MeshView& mesh, std::uint32_t index) {
-  const float* p = mesh.vtx2xyz + 3 * static_cast<std::size_t>(index);
-  return {p[0], p[1], p[2]};
+/// A triangle's corners at a time.
+inline Corners triangle_corners(const MeshView& mesh, std::size_t triangle, float time) {
+  if (mesh.kind == PrimitiveKind::kMovingTriangle) {
+    return moving_triangle(mesh, triangle, set_place(mesh.position_sets, time));
+  }
+  Corners at;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float* p = mesh.vtx2xyz + 3 * std::size_t{mesh.tri2vtx[3 * triangle + k]};
+    at.corner[k] = Vec3(p[0], p[1], p[2]);
+  }
+  return at;
 }
 
 }  // namespace detail
@@ -113,13 +123,15 @@ inline SurfacePoint round_surface_point(const InstanceView& instance, const Mesh
 /// surface as the tracer sees it.
 inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit, const Ray& ray) {
   using namespace detail;
-  const InstanceView& instance = scene.instances[hit.instance];
+  InstanceView room;
+  const InstanceView& instance = instance_at(scene, hit.instance, ray.time, room);
   const MeshView& mesh = scene.meshes[instance.mesh];
-  if (mesh.kind != PrimitiveKind::kTriangle) return round_surface_point(instance, mesh, hit, ray);
+  if (is_round(mesh.kind)) return round_surface_point(instance, mesh, hit, ray);
   const std::size_t tri = hit.primitive;
-  const Vec3d a(vertex(mesh, mesh.tri2vtx[3 * tri]));
-  const Vec3d ab = Vec3d(vertex(mesh, mesh.tri2vtx[3 * tri + 1])) - a;
-  const Vec3d ac = Vec3d(vertex(mesh, mesh.tri2vtx[3 * tri + 2])) - a;
+  const Corners corners = triangle_corners(mesh, tri, ray.time);
+  const Vec3d a(corners.corner[0]);
+  const Vec3d ab = Vec3d(corners.corner[1]) - a;
+  const Vec3d ac = Vec3d(corners.corner[2]) - a;
   const Mat3d into_local(instance.local_from_world);
   const Vec3d place(instance.position);
   double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
@@ -163,12 +175,10 @@ inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit, const 
   point.geometric_normal = unit_or(normal_transform * local_cross, -ray.direction);
   point.normal = point.geometric_normal;
   if (mesh.normals && (!mesh.tri2smooth || mesh.tri2smooth[tri])) {
-    const auto normal = [&](std::size_t corner) {
-      const float* n = mesh.normals + 3 * std::size_t{mesh.tri2normal[3 * tri + corner]};
-      return Vec3(n[0], n[1], n[2]);
-    };
+    const Corners normals = corner_normals(mesh, tri, ray.time);
     const float w = 1.0f - hit.u - hit.v;  // normals vary slowly: the tracer's own will do
-    const Vec3 smooth = w * normal(0) + hit.u * normal(1) + hit.v * normal(2);
+    const Vec3 smooth =
+        w * normals.corner[0] + hit.u * normals.corner[1] + hit.v * normals.corner[2];
     point.normal = unit_or(normal_transform * smooth, point.geometric_normal);
   }
   if (glm::dot(point.geometric_normal, ray.direction) > 0.0f) {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "core/vector.h"
+
 namespace komorebi::python {
 
 namespace py = pybind11;
@@ -71,6 +73,16 @@ std::span<const T> optional_view(const py::object& object, const std::string& wh
                                  const std::vector<py::ssize_t>& shape) {
   if (object.is_none()) return {};
   return view<T>(object, what, shape);
+}
+
+/// NumPy's row-major matrix as GLM's column-major one.
+template <class T>
+Mat4d matrix4(const T* rows) {
+  Mat4d m;
+  for (int r = 0; r < 4; ++r) {
+    for (int c = 0; c < 4; ++c) m[c][r] = static_cast<double>(rows[4 * r + c]);
+  }
+  return m;
 }
 
 }  // namespace komorebi::python

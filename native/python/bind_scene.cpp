@@ -22,7 +22,9 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
                                 const py::object& face_materials, const py::object& vertex_normals,
                                 const py::object& corner_uvs, const std::string& builder,
                                 unsigned threads, const std::shared_ptr<Cancel>& cancel,
-                                const std::shared_ptr<Mesh>& same_geometry) {
+                                const std::shared_ptr<Mesh>& same_geometry,
+                                const py::object& motion_positions,
+                                const py::object& motion_normals) {
   const std::string mesh = "mesh \"" + name + "\": ";
   MeshInput input;
   input.name = name;
@@ -37,6 +39,13 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
   input.face2smooth = {reinterpret_cast<const std::uint8_t*>(smooth.data()), smooth.size()};
   input.face2material = optional_view<std::int32_t>(face_materials, mesh + "face_materials", {-1});
   input.corner2uv = optional_view<float>(corner_uvs, mesh + "corner_uvs", {-1, 2});
+  const auto vertices = static_cast<py::ssize_t>(input.vtx2xyz.size() / 3);
+  const auto normals =
+      static_cast<py::ssize_t>(std::max(input.vtx2normal.size(), input.corner2normal.size()) / 3);
+  input.motion_positions =
+      optional_view<float>(motion_positions, mesh + "motion_positions", {-1, vertices, 3});
+  input.motion_normals =
+      optional_view<float>(motion_normals, mesh + "motion_normals", {-1, normals, 3});
   const Builder kind = builder_from_name(builder);
   const py::gil_scoped_release release;
   // Python has no const; nothing that is bound below changes a mesh.
@@ -84,19 +93,10 @@ std::shared_ptr<Environment> environment_from_pixels(const std::string& name,
                                        std::vector<float>(values.begin(), values.end()));
 }
 
-/// NumPy's row-major matrix as GLM's column-major one.
-template <class T>
-Mat4d matrix4(const T* rows) {
-  Mat4d m;
-  for (int r = 0; r < 4; ++r) {
-    for (int c = 0; c < 4; ++c) m[c][r] = static_cast<double>(rows[4 * r + c]);
-  }
-  return m;
-}
-
 void add_instances(Scene& scene, std::uint32_t mesh, const py::array& matrices,
                    const py::object& object_index, const py::object& mask, const py::object& flags,
-                   const py::object& material_slots, const std::string& name) {
+                   const py::object& material_slots, const std::string& name,
+                   const py::object& motion) {
   const std::string what = "instances of \"" + name + "\": ";
   const py::ssize_t n = matrices.ndim() > 0 ? matrices.shape(0) : 0;
   const auto objects = view<std::uint32_t>(object_index, what + "object_index", {n});
@@ -119,14 +119,24 @@ void add_instances(Scene& scene, std::uint32_t mesh, const py::array& matrices,
   } else {
     fill(view<double>(matrices, what + "matrices", {-1, 4, 4}));
   }
+  std::vector<Mat4d> poses;
+  if (!motion.is_none()) {
+    const auto values = view<double>(motion, what + "motion", {n, -1, 4, 4});
+    for (std::size_t i = 0; i < values.size(); i += 16) poses.push_back(matrix4(&values[i]));
+  }
   const py::gil_scoped_release release;
-  scene.add_instances(instances, name);
+  if (motion.is_none()) {
+    scene.add_instances(instances, name);
+  } else {
+    scene.add_moving_instances(instances, poses, name);
+  }
 }
 
 void set_camera(Scene& scene, const std::string& kind, const py::object& matrix, double clip_start,
                 double clip_end, std::uint32_t width, std::uint32_t height, const py::object& lens,
-                const py::object& panorama, const py::object& stereo) {
-  CameraDesc camera = camera_input(kind, matrix, lens, panorama, stereo);
+                const py::object& panorama, const py::object& stereo, const py::object& shutter,
+                const py::object& motion) {
+  CameraDesc camera = camera_input(kind, matrix, lens, panorama, stereo, shutter, motion);
   camera.clip_start = clip_start;
   camera.clip_end = clip_end;
   camera.width = width;
@@ -173,9 +183,10 @@ void set_tables(Scene& scene, const py::object& object_pass_index, const py::obj
   scene.set_tables(std::move(tables));
 }
 
-void commit(Scene& scene, unsigned threads, const std::shared_ptr<Cancel>& cancel) {
+void commit(Scene& scene, unsigned threads, const std::shared_ptr<Cancel>& cancel,
+            bool keep_inputs) {
   const py::gil_scoped_release release;
-  scene.commit(*build_pool(threads), cancel_or_never(cancel));
+  scene.commit(*build_pool(threads), cancel_or_never(cancel), keep_inputs);
 }
 
 void bind_mesh(py::module_& module) {
@@ -193,7 +204,10 @@ int32 [T]: Blender's loop triangles; None if every face has three or four corner
 corner_normals: float32 [C, 3], or vertex_normals: float32 [V, 3], unit; a row that is not finite
 counts as none, and without both every face is flat. smooth_faces: bool [F], None if all are
 smooth. face_materials: int32 [F]. corner_uvs: float32 [C, 2], for the UV pass. builder: LINEAR, SAH, PRINCIPAL_AXIS or LIST.
-same_geometry: a mesh made from the same positions, corners and triangles, whose tree is shared then.
+same_geometry: a mesh made from the same positions, motion_positions, corners and triangles, whose
+tree is shared then. motion_positions: float32 [2k, V, 3], positions at the other times of the
+shutter in their order; all with `positions` in the middle are at even times from its opening to its
+closing. motion_normals: float32 [2k, C or V, 3] likewise; None if normals do not change.
 Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
            py::arg("name"), py::arg("positions"), py::arg("corner_verts"), py::arg("face_offsets"),
            py::kw_only(), py::arg("tri2corner") = py::none(), py::arg("tri2face") = py::none(),
@@ -201,7 +215,8 @@ Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
            py::arg("face_materials") = py::none(), py::arg("vertex_normals") = py::none(),
            py::arg("corner_uvs") = py::none(), py::arg("builder") = "LINEAR",
            py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
-           py::arg("same_geometry") = std::shared_ptr<Mesh>())
+           py::arg("same_geometry") = std::shared_ptr<Mesh>(),
+           py::arg("motion_positions") = py::none(), py::arg("motion_normals") = py::none())
       .def(
           "rebuilt",
           [](const Mesh& old, const std::string& builder, unsigned threads,
@@ -214,6 +229,7 @@ Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
           py::arg("builder"), py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
           "The same mesh with a tree by another builder. Raises Cancelled.")
       .def_property_readonly("name", &Mesh::name)
+      .def_property_readonly("deforms", &Mesh::deforms)
       .def_property_readonly("triangle_count", &Mesh::triangle_count)
       .def_property_readonly("vertex_count", &Mesh::vertex_count)
       .def_property_readonly("degenerate_count", &Mesh::degenerate_count)
@@ -264,9 +280,11 @@ void bind_scene(py::module_& module) {
       .def("add_instances", &add_instances, py::arg("mesh"), py::arg("matrices"),
            py::arg("object_index"), py::kw_only(), py::arg("mask") = py::none(),
            py::arg("flags") = py::none(), py::arg("material_slots") = py::none(),
-           py::arg("name") = "",
+           py::arg("name") = "", py::arg("motion") = py::none(),
            "matrices: world from object, float64 or float32 [N, 4, 4], M @ p; object_index, mask, "
-           "flags, material_slots (which list of set_tables): uint32 [N].")
+           "flags, material_slots (which list of set_tables): uint32 [N]. motion: the same at an "
+           "odd number of even times from the opening of the shutter to the closing, float64 "
+           "[N, 2k + 1, 4, 4], of which matrices are the middle ones exactly.")
       .def("set_tables", &set_tables, py::kw_only(), py::arg("object_pass_index"),
            py::arg("object_mattes"), py::arg("object_terminators"), py::arg("material_pass_index"),
            py::arg("material_mattes"), py::arg("slot_begin"), py::arg("slots"),
@@ -287,14 +305,21 @@ void bind_scene(py::module_& module) {
       .def("set_camera", &set_camera, py::arg("kind"), py::arg("matrix"), py::arg("clip_start"),
            py::arg("clip_end"), py::arg("width"), py::arg("height"), py::kw_only(),
            py::arg("lens") = py::none(), py::arg("panorama") = py::none(),
-           py::arg("stereo") = py::none(),
+           py::arg("stereo") = py::none(), py::arg("shutter") = py::none(),
+           py::arg("motion") = py::none(),
            "kind: PERSPECTIVE, ORTHOGRAPHIC or PANORAMA. matrix: projection @ view (clip from "
            "world), of a panorama world from camera, float64 [4, 4]. Clip distances in metres, "
            "width and height of the full frame in pixels. lens, panorama, stereo: dicts of numbers "
            "by the names in native/render/camera_fields.h; panorama[\"kind\"] is Blender's "
-           "panorama_type.")
+           "panorama_type. shutter: dict of curve, float32 [N], weights at even times from the "
+           "opening to the closing (uniform without), and rolling_duration for a rolling shutter. "
+           "motion: dict of matrices, world from camera at an odd number of even times, the middle "
+           "one at rest, float64 [2k + 1, 4, 4], and zoom_open and zoom_close: how much wider a "
+           "perspective view is then, tan of half the angle over that at rest.")
       .def("commit", &commit, py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
-           "Builds the tree over instances; the scene is read only from here on.")
+           py::arg("keep_inputs") = true,
+           "Builds the tree over instances; the scene is read only from here on. keep_inputs: for "
+           "dump(); without, matrices are given back, 152 bytes an instance.")
       .def_property_readonly("triangle_count", &Scene::triangle_count)
       .def_property_readonly("instance_count", &Scene::instance_count)
       .def_property_readonly("invisible_count", &Scene::invisible_count)

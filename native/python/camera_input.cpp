@@ -41,7 +41,8 @@ class Numbers {
 }  // namespace
 
 CameraDesc camera_input(const std::string& kind, const py::object& matrix, const py::object& lens,
-                        const py::object& panorama, const py::object& stereo) {
+                        const py::object& panorama, const py::object& stereo,
+                        const py::object& shutter, const py::object& motion) {
   CameraDesc camera;
   if (kind == "ORTHOGRAPHIC") {
     camera.kind = CameraKind::kOrthographic;
@@ -55,10 +56,7 @@ CameraDesc camera_input(const std::string& kind, const py::object& matrix, const
     throw std::invalid_argument("a camera of kind PANORAMA, and no other, needs a panorama");
   }
   const auto rows = view<double>(matrix, "the camera's matrix", {4, 4});
-  Mat4d& m = panorama.is_none() ? camera.clip_from_world : camera.world_from_camera;
-  for (int r = 0; r < 4; ++r) {
-    for (int c = 0; c < 4; ++c) m[c][r] = rows[static_cast<std::size_t>(4 * r + c)];
-  }
+  (panorama.is_none() ? camera.clip_from_world : camera.world_from_camera) = matrix4(rows.data());
   if (!lens.is_none()) {
     Numbers numbers(lens, "lens");
     for_each_lens_number(camera.lens, [&](const char* n, auto& x) { numbers(n, x); });
@@ -74,6 +72,29 @@ CameraDesc camera_input(const std::string& kind, const py::object& matrix, const
   if (!stereo.is_none()) {
     Numbers numbers(stereo, "stereo");
     for_each_stereo_number(camera.stereo, [&](const char* n, auto& x) { numbers(n, x); });
+    numbers.finish();
+  }
+  if (!shutter.is_none()) {
+    Numbers numbers(shutter, "shutter");
+    if (numbers.has("curve")) {
+      const py::object weights = numbers.take("curve");
+      const auto curve = view<float>(weights, "the shutter's curve", {-1});
+      camera.shutter.curve.assign(curve.begin(), curve.end());
+    }
+    camera.shutter.rolling = numbers.has("rolling_duration");
+    numbers("rolling_duration", camera.shutter.rolling_duration);
+    numbers.finish();
+  }
+  if (!motion.is_none()) {
+    Numbers numbers(motion, "motion");
+    if (!numbers.has("matrices")) throw std::invalid_argument("a camera's motion needs matrices");
+    const py::object matrices = numbers.take("matrices");
+    const auto values = view<double>(matrices, "the camera's motion matrices", {-1, 4, 4});
+    for (std::size_t i = 0; i < values.size(); i += 16) {
+      camera.motion.poses.push_back(matrix4(&values[i]));
+    }
+    numbers("zoom_open", camera.motion.zoom_open);
+    numbers("zoom_close", camera.motion.zoom_close);
     numbers.finish();
   }
   return camera;

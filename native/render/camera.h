@@ -1,7 +1,10 @@
 #pragma once
 
+#include <vector>
+
 #include "core/camera.h"
 #include "render/panorama.h"
+#include "render/shutter.h"
 
 namespace komorebi {
 
@@ -21,6 +24,17 @@ struct StereoDesc {
   double pole_merge_angle_from = 0.0, pole_merge_angle_to = 0.0;  ///< radians; to = 0: never
 };
 
+/// How a camera moves while its shutter is open.
+struct CameraMotionDesc {
+  /// World from camera, looking along −Z with Y up, at even times from the opening to the closing;
+  /// an odd number of them, the middle one being the camera's own. Their scale is ignored, as in
+  /// Cycles. Empty: it stands still.
+  std::vector<Mat4d> poses;
+  /// How much wider a perspective view is than at rest when the shutter opens and closes: tangent
+  /// of half the angle of view over that at rest.
+  double zoom_open = 1.0, zoom_close = 1.0;
+};
+
 /// What a host knows of a camera. The matrix carries sensor fit, lens shift, pixel aspect and the
 /// picture's shape: clip space is Blender's and OpenGL's, −1…1 in x, y and z, y up.
 struct CameraDesc {
@@ -32,6 +46,8 @@ struct CameraDesc {
   LensDesc lens;
   PanoramaDesc panorama;
   StereoDesc stereo;
+  ShutterDesc shutter;
+  CameraMotionDesc motion;
 };
 
 /// Inverts the matrix in double. std::invalid_argument with a sentence when the matrix is not
@@ -40,6 +56,25 @@ struct CameraDesc {
 ///
 /// A perspective ray solves clip x = X·w and clip y = Y·w for the direction of unit w, so the clip
 /// z row, which is nearly parallel to w in distant scenes, costs no digits.
+///
+/// The camera stands still and its shutter is plain: see CameraTables.
 CameraView make_camera(const CameraDesc& desc, const Vec3d& scene_origin);
+
+/// Owns what a CameraView's shutter and motion read.
+class CameraTables {
+ public:
+  CameraTables() = default;
+  /// Throws std::invalid_argument with a sentence when poses or shutter stand for nothing, or the
+  /// middle pose is not where the camera is. `camera` is make_camera's of the same arguments.
+  CameraTables(const CameraDesc& desc, const Vec3d& scene_origin, const CameraView& camera);
+
+  /// Valid while the tables live and stay where they are.
+  void lend(CameraView& camera) const;
+
+ private:
+  ShutterTable shutter_;
+  std::vector<MotionPose> poses_;
+  CameraMotionView motion_;  // but for the pointer
+};
 
 }  // namespace komorebi

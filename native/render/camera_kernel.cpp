@@ -30,6 +30,14 @@ void project(const RenderContext& context, const CameraBlock& block) {
   }
 }
 
+/// From when the kernels drew to when the shutter lets light in.
+void open_shutter(const ShutterView& shutter, const CameraBlock& block) {
+  if (shutter.is_plain()) return;
+  for (std::uint32_t i = 0; i < block.count; ++i) {
+    block.time[i] = shutter_time(shutter, block.time[i], block.y[i]);
+  }
+}
+
 }  // namespace
 
 void start_rays(const RenderContext& context, const CameraBlock& block) {
@@ -37,11 +45,13 @@ void start_rays(const RenderContext& context, const CameraBlock& block) {
   if (index < 0) return start_rays_scalar(context, block);
   const CameraKernel& kernel = *kSimdCameraKernels[index];
   const CameraView& camera = context.camera;
-  if (camera.kind != CameraKind::kPanorama && camera.stereo.eye == 0.0) {
-    return kernel.start_rays(context, block);
+  if (camera.kind != CameraKind::kPanorama && camera.stereo.eye == 0.0 && !camera.motion.moves()) {
+    kernel.start_rays(context, block);
+    return open_shutter(camera.shutter, block);
   }
   // Samplers and filter are most of the work; projections are many and short.
   kernel.draw_points(context, block);
+  open_shutter(camera.shutter, block);
   project(context, block);
 }
 

@@ -13,7 +13,8 @@ struct CameraBlock {
 };
 
 /// start_ray (one_ray.h) for many samples at once, compiled for one instruction set; equal to it in
-/// every bit. A camera ray starts at t_min = 0. Panoramas and spherical stereo are not for it.
+/// every bit. A camera ray starts at t_min = 0. Panoramas, spherical stereo and cameras that move
+/// are not for it, and times are those that are drawn, before the shutter's curve.
 struct CameraKernel {
   void (*start_rays)(const RenderContext& context, const CameraBlock& block);
   /// Only what start_ray draws: time, the film point (in origin[0], [1]) and the point of the

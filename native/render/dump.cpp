@@ -20,6 +20,14 @@ std::span<const T> span_of(const T* data, std::size_t size) {
   return data ? std::span<const T>(data, size) : std::span<const T>();
 }
 
+/// All sets but the middle one, of `size` numbers each.
+std::vector<float> without_rest(std::span<const float> all, std::size_t size, std::size_t sets) {
+  const auto before = all.first(sets / 2 * size), after = all.subspan((sets / 2 + 1) * size);
+  std::vector<float> others(before.begin(), before.end());
+  others.insert(others.end(), after.begin(), after.end());
+  return others;
+}
+
 /// Curves or points.
 void put_round(ArrayFile& file, const std::string& key, const Mesh& mesh) {
   const RoundGeometry& round = *mesh.round();
@@ -40,14 +48,31 @@ void put_mesh(ArrayFile& file, const std::string& key, const Mesh& mesh) {
   const std::size_t triangles = v.triangle_count;
   file.put_text(key + "name", mesh.name());
   file.put<double>(key + "origin", span_of(glm::value_ptr(mesh.origin()), 3), {3});
-  put_rows<float>(file, key + "vtx2xyz", span_of(v.vtx2xyz, 3 * std::size_t{v.vertex_count}), 3);
+  const std::size_t coordinates = 3 * std::size_t{v.vertex_count}, sets = v.position_sets;
+  const std::size_t rest = sets / 2;
+  put_rows<float>(file, key + "vtx2xyz", span_of(v.vtx2xyz + rest * coordinates, coordinates), 3);
+  if (sets > 1) {
+    const std::vector<float> others =
+        without_rest(span_of(v.vtx2xyz, sets * coordinates), coordinates, sets);
+    file.put<float>(key + "motion_positions", others, {sets - 1, v.vertex_count, 3});
+  }
   put_rows<std::uint32_t>(file, key + "tri2vtx", span_of(v.tri2vtx, 3 * triangles), 3);
   if (v.normals) {
-    std::vector<float> normals(9 * triangles);
-    for (std::size_t k = 0; k < 3 * triangles; ++k) {
-      std::copy_n(v.normals + 3 * std::size_t{v.tri2normal[k]}, 3, &normals[3 * k]);
+    const std::size_t normal_sets = v.normal_sets, size = 9 * triangles;
+    std::vector<float> normals(size * normal_sets);
+    for (std::size_t set = 0; set < normal_sets; ++set) {
+      for (std::size_t k = 0; k < 3 * triangles; ++k) {
+        const std::size_t row = set * v.normal_count + v.tri2normal[k];
+        std::copy_n(v.normals + 3 * row, 3, &normals[set * size + 3 * k]);
+      }
     }
-    file.put<float>(key + "corner2normal", normals, {triangles, 3, 3});
+    file.put<float>(key + "corner2normal",
+                    std::span<const float>(normals).subspan(normal_sets / 2 * size, size),
+                    {triangles, 3, 3});
+    if (normal_sets > 1) {
+      file.put<float>(key + "motion_corner2normal", without_rest(normals, size, normal_sets),
+                      {normal_sets - 1, triangles, 3, 3});
+    }
   }
   if (v.tri2smooth) {
     file.put<std::uint8_t>(key + "tri2smooth", span_of(v.tri2smooth, triangles), {triangles});
@@ -102,6 +127,16 @@ std::shared_ptr<const Mesh> get_mesh(const ArrayFile& file, const std::string& k
   for (std::size_t f = 0; f < face_offsets.size(); ++f) {
     face_offsets[f] = static_cast<std::int32_t>(3 * f);
   }
+  std::vector<float> motion_positions, motion_normals;
+  if (file.has(key + "motion_positions")) {
+    motion_positions = file.get<float>(key + "motion_positions");
+    for (std::size_t i = 0; i < motion_positions.size(); ++i) {
+      motion_positions[i] = static_cast<float>(double{motion_positions[i]} + origin[i % 3]);
+    }
+  }
+  if (file.has(key + "motion_corner2normal")) {
+    motion_normals = file.get<float>(key + "motion_corner2normal");
+  }
   std::vector<float> normals;
   std::vector<std::uint8_t> smooth;
   std::vector<std::int32_t> materials;
@@ -115,6 +150,8 @@ std::shared_ptr<const Mesh> get_mesh(const ArrayFile& file, const std::string& k
   input.corner2vtx = corner2vtx;
   input.face_offsets = face_offsets;
   input.corner2normal = normals;
+  input.motion_positions = motion_positions;
+  input.motion_normals = motion_normals;
   input.face2smooth = smooth;
   input.face2material = materials;
   return Mesh::build(input, choose_builder(face_offsets.size() - 1, expected_rays), pool, cancel);
@@ -139,6 +176,43 @@ void put_instances(ArrayFile& file, const std::vector<InstanceInput>& instances)
   file.put<double>("instance/world_from_object", matrices, {n, 4, 4});
 }
 
+void put_poses(ArrayFile& file, const Scene& scene) {
+  const auto& moving = scene.moving_inputs();
+  if (moving.empty()) return;
+  std::vector<std::uint32_t> instance, count;
+  for (const auto& input : moving) {
+    instance.push_back(input.instance);
+    count.push_back(input.pose_count);
+  }
+  const std::size_t poses = scene.poses().size();
+  file.put<std::uint32_t>("instance/motion/instance", instance, {moving.size()});
+  file.put<std::uint32_t>("instance/motion/pose_count", count, {moving.size()});
+  file.put<double>("instance/motion/poses", span_of(glm::value_ptr(scene.poses()[0]), 16 * poses),
+                   {poses, 4, 4});
+}
+
+/// Those that stand still, and one by one those that move.
+void add_instances(const ArrayFile& file, std::span<const InstanceInput> instances, Scene& scene) {
+  const char* const name = "scene file";
+  if (!file.has("instance/motion/instance")) return scene.add_instances(instances, name);
+  const auto moving = file.get<std::uint32_t>("instance/motion/instance");
+  const auto counts = file.get<std::uint32_t>("instance/motion/pose_count", moving.size());
+  const auto numbers = file.get<double>("instance/motion/poses");
+  std::size_t added = 0, read = 0;
+  for (std::size_t m = 0; m < moving.size(); ++m) {
+    const std::size_t at = moving[m], end = read + 16 * std::size_t{counts[m]};
+    if (at < added || at >= instances.size() || end > numbers.size()) {
+      throw std::runtime_error("the scene's moving instances do not fit its instances");
+    }
+    scene.add_instances(instances.subspan(added, at - added), name);
+    std::vector<Mat4d> poses;
+    for (; read < end; read += 16) poses.push_back(glm::make_mat4(&numbers[read]));
+    scene.add_moving_instances(instances.subspan(at, 1), poses, name);
+    added = at + 1;
+  }
+  scene.add_instances(instances.subspan(added), name);
+}
+
 void get_instances(const ArrayFile& file, Scene& scene) {
   const auto mesh = file.get<std::uint32_t>("instance/mesh");
   const std::size_t n = mesh.size();
@@ -150,7 +224,7 @@ void get_instances(const ArrayFile& file, Scene& scene) {
   for (std::size_t i = 0; i < n; ++i) {
     instances[i] = {mesh[i], glm::make_mat4(&matrices[16 * i]), object[i], mask[i], flags[i]};
   }
-  scene.add_instances(instances, "scene file");
+  add_instances(file, instances, scene);
 }
 
 void put_world(ArrayFile& file, const Scene& scene) {
@@ -193,6 +267,7 @@ void write_dump(const std::string& path, const Scene& scene, const Settings& set
     put_mesh(file, "mesh/" + std::to_string(m) + "/", *scene.meshes()[m]);
   }
   put_instances(file, scene.inputs());
+  put_poses(file, scene);
   put_world(file, scene);
   put_camera(file, scene.camera_desc());
   put_settings(file, settings);

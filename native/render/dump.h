@@ -16,13 +16,17 @@ struct DumpedRender {
 
 /// Writes everything a render needs into one file of named arrays (io/array_file.h):
 ///
-///     mesh/N/name, vtx2xyz, origin, tri2vtx, corner2normal*, tri2smooth*, tri2material*
+///     mesh/N/name, vtx2xyz, origin, tri2vtx, corner2normal*, tri2smooth*, tri2material*,
+///         motion_positions*, motion_corner2normal*  (MeshInput)
 ///     mesh/N/name, origin, keys, curve_offsets, shape, subdivisions  (curves)
 ///     mesh/N/name, origin, points  (points)
 ///     instance/mesh, world_from_object, object_index, mask, flags
+///     instance/motion/instance*, pose_count*, poses*  of those that move (add_moving_instances)
 ///     world/color  or  world/texels, world/strength, world/texture_from_world
 ///     camera/kind, clip_from_world or world_from_camera, clip_start, clip_end, resolution,
 ///         lens/…*, panorama/…*, stereo/…*   by the names in camera_fields.h
+///     camera/motion/poses*, zoom_open, zoom_close  (CameraMotionDesc)
+///     camera/shutter/curve*, rolling_duration*     (ShutterDesc)
 ///     settings/…   one value a setting, by its name on scene.komorebi
 ///
 /// (* only where the mesh or camera has them.) Vertices, keys and points (x, y, z, radius) are

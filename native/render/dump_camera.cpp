@@ -31,6 +31,42 @@ constexpr const char* kLens = "camera/lens/";
 constexpr const char* kPanorama = "camera/panorama/";
 constexpr const char* kStereo = "camera/stereo/";
 
+void put_motion(ArrayFile& file, const CameraDesc& camera) {
+  const CameraMotionDesc& motion = camera.motion;
+  if (!motion.poses.empty()) {
+    const std::span<const double> numbers(glm::value_ptr(motion.poses[0]),
+                                          16 * motion.poses.size());
+    file.put<double>("camera/motion/poses", numbers, {motion.poses.size(), 4, 4});
+    file.put_value<double>("camera/motion/zoom_open", motion.zoom_open);
+    file.put_value<double>("camera/motion/zoom_close", motion.zoom_close);
+  }
+  const ShutterDesc& shutter = camera.shutter;
+  if (!shutter.curve.empty()) {
+    file.put<float>("camera/shutter/curve", shutter.curve, {shutter.curve.size()});
+  }
+  if (shutter.rolling) {
+    file.put_value<double>("camera/shutter/rolling_duration", shutter.rolling_duration);
+  }
+}
+
+void get_motion(const ArrayFile& file, CameraDesc& camera) {
+  if (file.has("camera/motion/poses")) {
+    const auto numbers = file.get<double>("camera/motion/poses");
+    for (std::size_t i = 0; i + 16 <= numbers.size(); i += 16) {
+      camera.motion.poses.push_back(glm::make_mat4(&numbers[i]));
+    }
+    camera.motion.zoom_open = file.get_value<double>("camera/motion/zoom_open");
+    camera.motion.zoom_close = file.get_value<double>("camera/motion/zoom_close");
+  }
+  if (file.has("camera/shutter/curve")) {
+    camera.shutter.curve = file.get<float>("camera/shutter/curve");
+  }
+  camera.shutter.rolling = file.has("camera/shutter/rolling_duration");
+  if (camera.shutter.rolling) {
+    camera.shutter.rolling_duration = file.get_value<double>("camera/shutter/rolling_duration");
+  }
+}
+
 }  // namespace
 
 void put_camera(ArrayFile& file, const CameraDesc& camera) {
@@ -48,6 +84,7 @@ void put_camera(ArrayFile& file, const CameraDesc& camera) {
                                   static_cast<std::uint32_t>(camera.panorama.kind));
     for_each_panorama_number(camera.panorama, writer(file, kPanorama));
   }
+  put_motion(file, camera);
 }
 
 CameraDesc get_camera(const ArrayFile& file) {
@@ -71,6 +108,7 @@ CameraDesc get_camera(const ArrayFile& file) {
     camera.panorama.kind = static_cast<PanoramaKind>(panorama);
     for_each_panorama_number(camera.panorama, reader(file, kPanorama));
   }
+  get_motion(file, camera);
   return camera;
 }
 

@@ -61,13 +61,21 @@ void Mesh::take_normals(const MeshInput& in, ThreadPool& pool, const Cancel& can
   const bool any_smooth =
       in.face2smooth.empty() || std::any_of(in.face2smooth.begin(), in.face2smooth.end(), smooth);
   if (normals.empty() || !any_smooth) return;
-  normals_.resize(normals.size());
-  for_each_index(normals.size() / 3, pool, cancel, [&](std::size_t i) {
-    // Custom normals may hold anything: a null normal makes the shading use the triangle's own.
-    const Vec3 n = row(normals, i);
-    const bool finite = std::isfinite(n.x) && std::isfinite(n.y) && std::isfinite(n.z);
-    for (std::size_t c = 0; c < 3; ++c) normals_[3 * i + c] = finite ? normals[3 * i + c] : 0.0f;
-  });
+  normals_.resize(normals.size() + in.motion_normals.size());
+  normal_sets_ = static_cast<std::uint32_t>(normals_.size() / normals.size());
+  const auto take = [&](std::span<const float> rows, std::size_t to) {
+    for_each_index(rows.size() / 3, pool, cancel, [&](std::size_t i) {
+      // Custom normals may hold anything: a null normal makes the shading use the triangle's own.
+      const Vec3 n = row(rows, i);
+      const bool finite = std::isfinite(n.x) && std::isfinite(n.y) && std::isfinite(n.z);
+      for (std::size_t c = 0; c < 3; ++c)
+        normals_[to + 3 * i + c] = finite ? rows[3 * i + c] : 0.0f;
+    });
+  };
+  const std::size_t before = in.motion_normals.size() / 2;
+  take(in.motion_normals.first(before), 0);
+  take(normals, before);
+  take(in.motion_normals.subspan(before), before + normals.size());
   tri2normal_ = geometry_->tri2vtx.data();
   if (in.vtx2normal.empty()) {
     tri2normal_ = geometry_->tri2corner.data();
@@ -111,7 +119,8 @@ std::shared_ptr<const Mesh> Mesh::build(const MeshInput& in, Builder builder, Th
   mesh->name_ = in.name;
   if (same_geometry) {
     mesh->geometry_ = same_geometry->geometry_;
-    if (mesh->vertex_count() != in.vtx2xyz.size() / 3 || mesh->triangle_count() != triangles(in)) {
+    if (mesh->vertex_count() != in.vtx2xyz.size() / 3 || mesh->triangle_count() != triangles(in) ||
+        mesh->geometry_->sets != in.set_count()) {
       throw std::invalid_argument("mesh \"" + in.name + "\": it has not the geometry of \"" +
                                   same_geometry->name() + "\"");
     }
@@ -149,11 +158,11 @@ std::shared_ptr<const Mesh> Mesh::flattened(const Mat4d& matrix, ThreadPool& poo
     for (int c = 0; c < 3; ++c) moved[i + static_cast<std::size_t>(c)] = static_cast<float>(p[c]);
   }
   const auto geometry = std::make_shared<MeshGeometry>();
+  geometry->sets = geometry_->sets;
   geometry->take_positions(moved, pool);
   geometry->tri2vtx = geometry_->tri2vtx;
   geometry->tri2corner = geometry_->tri2corner;
-  geometry->tree =
-      build_mesh_tree(geometry->vtx2xyz, geometry->tri2vtx, Builder::kLinear, pool, cancel);
+  geometry->build_tree(Builder::kLinear, pool, cancel);
   std::shared_ptr<Mesh> mesh(new Mesh);
   mesh->name_ = name_;
   mesh->geometry_ = geometry;
@@ -164,6 +173,7 @@ std::shared_ptr<const Mesh> Mesh::flattened(const Mat4d& matrix, ThreadPool& poo
 
 void Mesh::take_shading(const Mesh& other) {
   normals_ = other.normals_;
+  normal_sets_ = other.normal_sets_;
   every_corner_ = other.every_corner_;
   tri2smooth_ = other.tri2smooth_;
   tri2material_ = other.tri2material_;
@@ -185,10 +195,11 @@ std::shared_ptr<const Mesh> Mesh::rebuilt(Builder builder, ThreadPool& pool,
   }
   const auto geometry = std::make_shared<MeshGeometry>();
   geometry->origin = geometry_->origin;
+  geometry->sets = geometry_->sets;
   geometry->vtx2xyz = geometry_->vtx2xyz;
   geometry->tri2vtx = geometry_->tri2vtx;
   geometry->tri2corner = geometry_->tri2corner;
-  geometry->tree = build_mesh_tree(geometry->vtx2xyz, geometry->tri2vtx, builder, pool, cancel);
+  geometry->build_tree(builder, pool, cancel);
   std::shared_ptr<Mesh> mesh(new Mesh);
   mesh->name_ = name_;
   mesh->geometry_ = geometry;
@@ -210,6 +221,14 @@ MeshView Mesh::view() const {
   view.vertex_count = vertex_count();
   view.vtx2xyz = geometry_->vtx2xyz.data();
   view.tri2vtx = geometry_->tri2vtx.data();
+  view.position_sets = geometry_->sets;
+  if (deforms()) {
+    view.kind = PrimitiveKind::kMovingTriangle;
+    view.time_trees = geometry_->moving_tree.views.data();
+    view.time_tree_count = static_cast<std::uint32_t>(geometry_->moving_tree.views.size());
+  }
+  view.normal_sets = normal_sets_;
+  view.normal_count = static_cast<std::uint32_t>(normals_.size() / 3 / normal_sets_);
   view.normals = normals_.empty() ? nullptr : normals_.data();
   view.tri2normal = tri2normal_;
   view.tri2smooth = tri2smooth_.empty() ? nullptr : tri2smooth_.data();

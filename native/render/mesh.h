@@ -47,14 +47,20 @@ class Mesh {
     return static_cast<std::uint32_t>(geometry_->triangle_count());
   }
   std::uint32_t vertex_count() const {
-    return static_cast<std::uint32_t>(geometry_->vtx2xyz.size() / 3);
+    return static_cast<std::uint32_t>(geometry_->vertex_count());
   }
   std::uint32_t degenerate_count() const { return tree().degenerate_count; }
   const MeshTree& tree() const { return geometry_->tree; }
   std::size_t node_count() const {
-    return round_ ? round_->tree.nodes.size() : geometry_->tree.nodes.size();
+    return round_ ? round_->tree.nodes.size()
+                  : geometry_->tree.nodes.size() + geometry_->moving_tree.node_count();
   }
-  std::uint32_t depth() const { return round_ ? round_->tree.depth : geometry_->tree.depth; }
+  std::uint32_t depth() const {
+    if (deforms()) return geometry_->moving_tree.depth();
+    return round_ ? round_->tree.depth : geometry_->tree.depth;
+  }
+  /// Whether its vertices move while the shutter is open.
+  bool deforms() const { return geometry_->sets > 1; }
   /// Triangles, segments of curves, or points.
   std::uint32_t primitive_count() const {
     return round_ ? round_->primitive_count() : triangle_count();
@@ -77,7 +83,10 @@ class Mesh {
   std::string name_;
   std::shared_ptr<const MeshGeometry> geometry_;  // empty where there are curves or points
   std::shared_ptr<const RoundGeometry> round_;
-  Array<float> normals_;                       // as they came, by vertex or by corner; empty: flat
+  // By vertex or by corner, as they came; of a mesh that deforms once a set, or the same at all
+  // times. Empty: flat.
+  Array<float> normals_;
+  std::uint32_t normal_sets_ = 1;
   const std::uint32_t* tri2normal_ = nullptr;  // into geometry_, or every_corner_
   Array<std::uint32_t> every_corner_;          // 0, 1, 2 …
   Array<std::uint8_t> tri2smooth_;

@@ -111,6 +111,18 @@ void check_mesh(const MeshInput& in, ThreadPool& pool) {
   if (!in.vtx2normal.empty() && !in.corner2normal.empty()) {
     refuse(in.name, "normals are either by vertex or by corner, not both");
   }
+  const std::size_t positions = in.vtx2xyz.size();
+  if (in.motion_positions.size() % std::max<std::size_t>(2 * positions, 1) != 0 ||
+      in.set_count() > 4097) {
+    refuse(in.name, "motion_positions must have a row a vertex at an even number of times");
+  }
+  if (const auto bad = count_non_finite_rows(in.motion_positions, pool)) {
+    refuse(in.name, counted(bad, "vertex in time is", "vertices in time are") + " not finite");
+  }
+  const std::size_t normals = std::max(in.vtx2normal.size(), in.corner2normal.size());
+  if (!in.motion_normals.empty() && in.motion_normals.size() != (in.set_count() - 1) * normals) {
+    refuse(in.name, "motion_normals must have a row a normal at the times of motion_positions");
+  }
   if (!in.face2smooth.empty() && in.face2smooth.size() != faces) {
     refuse(in.name, "smooth_faces must have one entry a face");
   }

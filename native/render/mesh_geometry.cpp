@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <vector>
 
 #include "render/triangulate.h"
 
@@ -83,17 +84,38 @@ void MeshGeometry::take_triangles(const MeshInput& in, ThreadPool& pool, const C
   });
 }
 
+void MeshGeometry::build_tree(Builder builder, ThreadPool& pool, const Cancel& cancel) {
+  if (sets == 1) {
+    tree = build_mesh_tree(vtx2xyz, tri2vtx, builder, pool, cancel);
+    return;
+  }
+  moving_tree = build_moving_tree(vtx2xyz, sets, tri2vtx, builder, pool, cancel);
+  tree.bounds = moving_tree.bounds;
+}
+
 std::size_t MeshGeometry::byte_count() const {
   return sizeof(MeshGeometry) + vtx2xyz.capacity() * sizeof(float) +
-         (tri2vtx.capacity() + tri2corner.capacity()) * sizeof(std::uint32_t) + tree.byte_count();
+         (tri2vtx.capacity() + tri2corner.capacity()) * sizeof(std::uint32_t) + tree.byte_count() +
+         moving_tree.byte_count();
 }
 
 MeshGeometry build_geometry(const MeshInput& in, Builder builder, ThreadPool& pool,
                             const Cancel& cancel) {
   MeshGeometry geometry;
-  geometry.take_positions(in.vtx2xyz, pool);
+  geometry.sets = in.set_count();
+  if (geometry.sets == 1) {
+    geometry.take_positions(in.vtx2xyz, pool);
+  } else {
+    const std::size_t before = in.motion_positions.size() / 2;
+    std::vector<float> all(in.motion_positions.begin(),
+                           in.motion_positions.begin() + std::ptrdiff_t(before));
+    all.insert(all.end(), in.vtx2xyz.begin(), in.vtx2xyz.end());
+    all.insert(all.end(), in.motion_positions.begin() + std::ptrdiff_t(before),
+               in.motion_positions.end());
+    geometry.take_positions(all, pool);
+  }
   geometry.take_triangles(in, pool, cancel);
-  geometry.tree = build_mesh_tree(geometry.vtx2xyz, geometry.tri2vtx, builder, pool, cancel);
+  geometry.build_tree(builder, pool, cancel);
   return geometry;
 }
 

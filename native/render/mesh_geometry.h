@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bvh/mesh_tree.h"
+#include "bvh/moving_tree.h"
 #include "parallel/array.h"
 
 namespace komorebi {
@@ -22,6 +23,17 @@ struct MeshInput {
   std::span<const std::uint8_t> face2smooth;    ///< [faces]; empty: every face is smooth
   std::span<const std::int32_t> face2material;  ///< [faces]; empty: slot 0
   std::span<const float> corner2uv;             ///< [corners][2]; empty: no UV map
+  /// Of a mesh that deforms: positions at the other times, [2 k][vertices][3] in their order.
+  /// `vtx2xyz` are those in the middle; all together are at even times over the shutter.
+  std::span<const float> motion_positions;
+  std::span<const float> motion_normals;  ///< [2 k][rows of normals][3]; empty: those do not change
+
+  /// At how many times there are positions.
+  std::uint32_t set_count() const {
+    return vtx2xyz.empty()
+               ? 1
+               : static_cast<std::uint32_t>(1 + motion_positions.size() / vtx2xyz.size());
+  }
 };
 
 /// What of a mesh decides where rays hit: positions, triangles and the tree over them. Apart from
@@ -33,16 +45,21 @@ struct MeshInput {
 /// origin costs the rays no precision, and one around it keeps its own.
 struct MeshGeometry {
   Vec3d origin{0.0};
-  Array<float> vtx2xyz;          ///< [vertices][3]
+  std::uint32_t sets = 1;        ///< of positions, at even times; 1: nothing moves
+  Array<float> vtx2xyz;          ///< [sets][vertices][3]
   Array<std::uint32_t> tri2vtx;  ///< [triangles][3]
   Array<std::uint32_t>
-      tri2corner;  ///< [triangles][3]; empty: triangle t has corners 3 t to 3 t + 2
-  MeshTree tree;
+      tri2corner;          ///< [triangles][3]; empty: triangle t has corners 3 t to 3 t + 2
+  MeshTree tree;           ///< of one that deforms: its box alone
+  MovingTree moving_tree;  ///< of one that deforms
 
+  std::size_t vertex_count() const { return vtx2xyz.size() / 3 / sets; }
   std::size_t triangle_count() const { return tri2vtx.size() / 3; }
   std::size_t byte_count() const;
   /// Fills vtx2xyz and origin.
   void take_positions(std::span<const float> positions, ThreadPool& pool);
+  /// From positions and triangles.
+  void build_tree(Builder builder, ThreadPool& pool, const Cancel& cancel);
   /// Fills tri2vtx and tri2corner.
   void take_triangles(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
 };

@@ -13,8 +13,9 @@ Ray start_ray(const RenderContext& context, std::uint32_t x, std::uint32_t y,
   const Vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
   const Vec2 film =
       centre + sample_filter(context.filter, sampler.sample_2d(kDimensionPixel, sample));
-  Ray ray = camera_ray(context.camera, film, sampler.sample_2d(kDimensionLens, sample),
-                       sampler.sample_1d(kDimensionTime, sample));
+  const float time =
+      shutter_time(context.camera.shutter, sampler.sample_1d(kDimensionTime, sample), y);
+  Ray ray = camera_ray(context.camera, film, sampler.sample_2d(kDimensionLens, sample), time);
   ray.mask = kMaskCamera;
   return ray;
 }

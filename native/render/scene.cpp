@@ -11,14 +11,14 @@ namespace {
 /// an object's space and back; the object's triangles are transformed instead.
 constexpr double kMaxCondition = 1e7;
 
-bool finite(const Mat4d& m) {
+bool is_affine(const Mat4d& m) {
   for (int c = 0; c < 4; ++c) {
     for (int r = 0; r < 4; ++r) {
       // A float must be able to hold it too.
       if (!(std::abs(m[c][r]) <= 1e30)) return false;
     }
   }
-  return true;
+  return m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0;
 }
 
 double frobenius(const Mat3d& m) {
@@ -62,8 +62,7 @@ void Scene::add_instances(std::span<const InstanceInput> instances, const std::s
       throw std::invalid_argument("instances of \"" + name + "\": there is no mesh " +
                                   std::to_string(instance.mesh));
     }
-    const Mat4d& m = instance.world_from_object;
-    bad += !(finite(m) && m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0);
+    bad += !is_affine(instance.world_from_object);
   }
   if (bad) {
     throw std::invalid_argument("instances of \"" + name + "\": " + std::to_string(bad) +
@@ -75,6 +74,46 @@ void Scene::add_instances(std::span<const InstanceInput> instances, const std::s
   }
   for (const InstanceInput& i : instances) has_catchers_ |= (i.flags & kInstanceShadowCatcher) != 0;
   inputs_.insert(inputs_.end(), instances.begin(), instances.end());
+}
+
+void Scene::add_moving_instances(std::span<const InstanceInput> instances,
+                                 std::span<const Mat4d> poses, const std::string& name) {
+  const auto refuse = [&](const std::string& what) {
+    throw std::invalid_argument("instances of \"" + name + "\": " + what);
+  };
+  if (instances.empty()) return require_open();
+  const std::size_t count = poses.size() / instances.size();
+  if (count * instances.size() != poses.size() || count < 3 || count % 2 == 0 || count > 4097) {
+    refuse("their poses in time must be 3 to 4097, an odd number");
+  }
+  std::vector<MovingInput> moving;
+  const std::size_t before = inputs_.size();
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    const auto own = poses.subspan(i * count, count);
+    for (const Mat4d& pose : own) {
+      if (!is_affine(pose)) refuse("a pose is not finite or not affine");
+    }
+    if (own[count / 2] != instances[i].world_from_object) {
+      refuse("the middle one of the poses in time is not that at rest");
+    }
+    if (std::ranges::count(own, own[0]) == static_cast<std::ptrdiff_t>(count)) continue;
+    moving.push_back({static_cast<std::uint32_t>(before + i), static_cast<std::uint32_t>(count),
+                      poses_.size() + count * moving.size()});
+  }
+  add_instances(instances, name);
+  for (const MovingInput& input : moving) {
+    const auto own = poses.subspan((input.instance - before) * count, count);
+    poses_.insert(poses_.end(), own.begin(), own.end());
+  }
+  moving_inputs_.insert(moving_inputs_.end(), moving.begin(), moving.end());
+  if (moving_inputs_.size() >= kNoMotion) refuse("too many instances that move");
+}
+
+const std::vector<InstanceInput>& Scene::inputs() const {
+  if (inputs_gone_) {
+    throw std::invalid_argument("the scene was committed without keeping what was added to it");
+  }
+  return inputs_;
 }
 
 void Scene::set_world_color(const Vec3& radiance) {
@@ -96,7 +135,8 @@ void Scene::set_world_environment(std::shared_ptr<const Environment> environment
 
 void Scene::set_camera(const CameraDesc& camera) {
   require_open();
-  make_camera(camera, Vec3d(0.0));  // refuses what cannot be inverted
+  // Refuse what cannot be inverted.
+  CameraTables(camera, Vec3d(0.0), make_camera(camera, Vec3d(0.0)));
   camera_desc_ = camera;
   has_camera_ = true;
 }
@@ -128,13 +168,16 @@ float Scene::max_radiance() const {
   return max_abs(world_color_);
 }
 
-void Scene::place(const InstanceInput& input, ThreadPool& pool, const Cancel& cancel) {
+void Scene::place(const InstanceInput& input, std::span<const Mat4d> poses, ThreadPool& pool,
+                  const Cancel& cancel) {
   std::shared_ptr<const Mesh> mesh = meshes_[input.mesh];
   InstanceView instance;
   instance.mesh = input.mesh;
   instance.mask = input.mask & kMaskRays;
-  if (input.flags & kInstanceShadowCatcher) instance.mask |= instance.mask << kMaskCatcherShift;
-  instance.flags = input.flags;
+  if (input.flags & kInstanceShadowCatcher) {
+    instance.mask |= (input.mask & kMaskRays) << kMaskCatcherShift;
+  }
+  instance.flags = input.flags & 3u;
   instance.object_index = input.object_index;
   instance.material_slots = input.material_slots;
   Mat3d linear(input.world_from_object);
@@ -143,6 +186,7 @@ void Scene::place(const InstanceInput& input, ThreadPool& pool, const Cancel& ca
   if (invertible(linear, inverse)) {
     position += linear * mesh->origin();
   } else {
+    poses = {};
     mesh = mesh->flattened(input.world_from_object, pool, cancel);
     invisible_count_ += mesh->bounds().is_empty();
     instance.mesh = static_cast<std::uint32_t>(traced_meshes_.size());
@@ -154,21 +198,30 @@ void Scene::place(const InstanceInput& input, ThreadPool& pool, const Cancel& ca
   instance.local_from_world = Mat3(inverse);
   instance.position = Vec3(position - origin_);
   place_instance(instance, mesh->bounds());
+  if (!poses.empty()) {
+    motion_.add(static_cast<std::uint32_t>(instances_.size()), instance, poses, mesh->origin(),
+                mesh->bounds(), origin_);
+  }
   instances_.push_back(instance);
 }
 
 void Scene::choose_origin() {
   Vec3d lo(1e300), hi(-1e300);
-  for (const InstanceInput& input : inputs_) {
-    const Mesh& mesh = *meshes_[input.mesh];
+  const auto include = [&](const Mesh& mesh, const Mat4d& matrix) {
     const Aabb& box = mesh.bounds();
-    if (box.is_empty()) continue;
+    if (box.is_empty()) return;
     for (int corner = 0; corner < 8; ++corner) {
       const Vec3d local(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
                         corner & 4 ? box.hi.z : box.lo.z);
-      const Vec3d world(input.world_from_object * glm::dvec4(local + mesh.origin(), 1.0));
+      const Vec3d world(matrix * glm::dvec4(local + mesh.origin(), 1.0));
       lo = glm::min(lo, world);
       hi = glm::max(hi, world);
+    }
+  };
+  for (const InstanceInput& input : inputs_) include(*meshes_[input.mesh], input.world_from_object);
+  for (const MovingInput& input : moving_inputs_) {
+    for (std::uint32_t i = 0; i < input.pose_count; ++i) {
+      include(*meshes_[inputs_[input.instance].mesh], poses_[input.first_pose + i]);
     }
   }
   if (!(lo.x <= hi.x)) return;  // nothing to see: the origin stays
@@ -182,24 +235,48 @@ void Scene::choose_origin() {
   origin_ = step * glm::round(glm::clamp(eye, lo, hi) / step);
 }
 
-void Scene::commit(ThreadPool& pool, const Cancel& cancel) {
+void Scene::build_tree(ThreadPool& pool, const Cancel& cancel) {
+  std::vector<Aabb> boxes;
+  boxes.reserve(instances_.size() + motion_.groups.size());
+  for (const InstanceView& instance : instances_) {
+    boxes.push_back(instance.motion == kNoMotion ? instance.world_bounds : Aabb{});
+  }
+  boxes.insert(boxes.end(), motion_.group_boxes.begin(), motion_.group_boxes.end());
+  // Behind each leaf stands a whole tree: the better builder pays from the first rays on.
+  tree_ = build_instance_tree(boxes, Builder::kSah, pool, cancel);
+  std::vector<Aabb>().swap(motion_.group_boxes);
+}
+
+void Scene::commit(ThreadPool& pool, const Cancel& cancel, bool keep_inputs) {
   require_open();
   committed_ = true;
   choose_origin();
 
   traced_meshes_ = meshes_;
   instances_.reserve(inputs_.size());
+  auto moving = moving_inputs_.begin();
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     if (i % 4096 == 0 && cancel.raised()) throw Cancelled();
-    place(inputs_[i], pool, cancel);
+    std::span<const Mat4d> poses;
+    if (moving != moving_inputs_.end() && moving->instance == i) {
+      poses = std::span(poses_).subspan(moving->first_pose, moving->pose_count);
+      ++moving;
+    }
+    place(inputs_[i], poses, pool, cancel);
+  }
+  if (!keep_inputs) {
+    std::vector<InstanceInput>().swap(inputs_);
+    std::vector<MovingInput>().swap(moving_inputs_);
+    std::vector<Mat4d>().swap(poses_);
+    inputs_gone_ = true;
   }
   for (const auto& mesh : traced_meshes_) mesh_views_.push_back(mesh->view());
-  std::vector<Aabb> boxes;
-  boxes.reserve(instances_.size());
-  for (const InstanceView& instance : instances_) boxes.push_back(instance.world_bounds);
-  // Behind each leaf stands a whole tree: the better builder pays from the first rays on.
-  tree_ = build_instance_tree(boxes, Builder::kSah, pool, cancel);
-  if (has_camera_) camera_ = make_camera(camera_desc_, origin_);
+  build_tree(pool, cancel);
+  if (has_camera_) {
+    camera_ = make_camera(camera_desc_, origin_);
+    camera_tables_ = CameraTables(camera_desc_, origin_, camera_);
+    camera_tables_.lend(camera_);
+  }
 
   view_.meshes = mesh_views_.data();
   view_.mesh_count = static_cast<std::uint32_t>(mesh_views_.size());
@@ -207,18 +284,30 @@ void Scene::commit(ThreadPool& pool, const Cancel& cancel) {
   view_.instance_count = static_cast<std::uint32_t>(instances_.size());
   view_.tree = tree_.view();
   view_.leaf2instance = tree_.leaf2instance.data();
+  view_.motions = motion_.motions.data();
+  view_.motion_keys = motion_.keys.data();
+  view_.motion_groups = motion_.groups.data();
+  view_.motion_group_count = static_cast<std::uint32_t>(motion_.groups.size());
+  view_.moves = !motion_.groups.empty();
+  for (const auto& mesh : traced_meshes_) view_.moves = view_.moves || mesh->deforms();
 }
 
 std::uint64_t Scene::triangle_count() const {
   std::uint64_t sum = 0;
   for (const InstanceInput& input : inputs_) sum += meshes_[input.mesh]->triangle_count();
+  if (!inputs_gone_) return sum;
+  for (const InstanceView& instance : instances_) {
+    sum += traced_meshes_[instance.mesh]->triangle_count();
+  }
   return sum;
 }
 
 std::size_t Scene::byte_count() const {
-  std::size_t sum =
-      sizeof(Scene) + tree_.byte_count() + instances_.capacity() * sizeof(InstanceView) +
-      inputs_.capacity() * sizeof(InstanceInput) + mesh_views_.capacity() * sizeof(MeshView);
+  std::size_t sum = sizeof(Scene) + tree_.byte_count() +
+                    instances_.capacity() * sizeof(InstanceView) +
+                    inputs_.capacity() * sizeof(InstanceInput) +
+                    mesh_views_.capacity() * sizeof(MeshView) + poses_.capacity() * sizeof(Mat4d) +
+                    moving_inputs_.capacity() * sizeof(MovingInput) + motion_.byte_count();
   for (const auto& mesh : traced_meshes_.empty() ? meshes_ : traced_meshes_) {
     sum += mesh->byte_count();
   }

@@ -10,6 +10,7 @@
 #include "core/environment.h"
 #include "render/camera.h"
 #include "render/environment.h"
+#include "render/instance_motion.h"
 #include "render/mesh.h"
 #include "render/scene_tables.h"
 
@@ -38,6 +39,12 @@ class Scene {
   std::uint32_t add_mesh(std::shared_ptr<const Mesh> mesh);
   /// Throws std::invalid_argument when a matrix is not finite or no affine map, naming `name`.
   void add_instances(std::span<const InstanceInput> instances, const std::string& name);
+  /// The same for instances that move while the shutter is open: world_from_object is that at rest.
+  /// Between poses they go Cycles' way (core/motion.h). One that is flat at rest stays there.
+  /// @param poses  world from object, of each instance as many (an odd number, at least 3) at even
+  ///               times from the opening to the closing, the middle one world_from_object itself
+  void add_moving_instances(std::span<const InstanceInput> instances, std::span<const Mat4d> poses,
+                            const std::string& name);
   /// Uniform radiance, linear Rec.709, finite and not negative.
   void set_world_color(const Vec3& radiance);
   void set_world_environment(std::shared_ptr<const Environment> environment, double strength,
@@ -47,7 +54,8 @@ class Scene {
   void set_tables(SceneTables tables);
 
   /// Builds the tree over instances. Throws Cancelled; after it the scene can only be dropped.
-  void commit(ThreadPool& pool, const Cancel& cancel);
+  /// @param keep_inputs  for inputs(); else what was added is given back, 152 bytes an instance
+  void commit(ThreadPool& pool, const Cancel& cancel, bool keep_inputs = true);
   bool committed() const { return committed_; }
 
   const SceneView& view() const { return view_; }
@@ -64,9 +72,20 @@ class Scene {
 
   const Vec3d& origin() const { return origin_; }
   const std::vector<std::shared_ptr<const Mesh>>& meshes() const { return meshes_; }
-  const std::vector<InstanceInput>& inputs() const { return inputs_; }
+  /// What was added, for whoever writes it down; throws std::invalid_argument if commit has given
+  /// it back.
+  const std::vector<InstanceInput>& inputs() const;
+  /// Poses of those of inputs() that move, in their order.
+  struct MovingInput {
+    std::uint32_t instance, pose_count;
+    std::size_t first_pose;  ///< in poses()
+  };
+  const std::vector<MovingInput>& moving_inputs() const { return moving_inputs_; }
+  const std::vector<Mat4d>& poses() const { return poses_; }
   std::uint64_t triangle_count() const;  ///< counted once an instance
-  std::uint32_t instance_count() const { return static_cast<std::uint32_t>(inputs_.size()); }
+  std::uint32_t instance_count() const {
+    return static_cast<std::uint32_t>(instances_.empty() ? inputs_.size() : instances_.size());
+  }
   std::uint32_t invisible_count() const { return invisible_count_; }  ///< scaled to a line or point
   std::size_t byte_count() const;
 
@@ -78,13 +97,18 @@ class Scene {
  private:
   void require_open() const;
   void choose_origin();
-  void place(const InstanceInput& input, ThreadPool& pool, const Cancel& cancel);
+  void place(const InstanceInput& input, std::span<const Mat4d> poses, ThreadPool& pool,
+             const Cancel& cancel);
+  void build_tree(ThreadPool& pool, const Cancel& cancel);
 
   bool committed_ = false;
   bool has_camera_ = false;
   bool has_catchers_ = false;
   std::vector<std::shared_ptr<const Mesh>> meshes_;
   std::vector<InstanceInput> inputs_;
+  std::vector<MovingInput> moving_inputs_;
+  std::vector<Mat4d> poses_;
+  bool inputs_gone_ = false;
   Vec3 world_color_{0.0f};
   std::shared_ptr<const Environment> environment_;
   double strength_ = 1.0;
@@ -96,8 +120,10 @@ class Scene {
   std::vector<std::shared_ptr<const Mesh>> traced_meshes_;  // meshes_, then the flattened ones
   std::vector<MeshView> mesh_views_;
   std::vector<InstanceView> instances_;
+  MotionTable motion_;
   std::uint32_t invisible_count_ = 0;
   InstanceTree tree_;
+  CameraTables camera_tables_;
   CameraView camera_;
   SceneView view_;
 };

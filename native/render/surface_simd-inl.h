@@ -29,16 +29,31 @@ struct HitLanes {
     }
   }
 
+  /// Corners and, if there are any, normals of a triangle that moves.
+  HWY_NOINLINE void put_moving(const MeshView& mesh, std::uint32_t triangle, float time,
+                               std::size_t lane) {
+    const Corners at = detail::triangle_corners(mesh, triangle, time);
+    const Corners normals = mesh.normals ? corner_normals(mesh, triangle, time) : Corners{};
+    for (int k = 0; k < 3; ++k) {
+      put(kCorners + 3 * k, &at.corner[k].x, 3, lane);
+      put(kNormals + 3 * k, &normals.corner[k].x, 3, lane);
+    }
+  }
+
   /// False for a curve or sphere, of which nothing is fetched.
   HWY_INLINE bool fetch(const RenderContext& context, const SurfaceBlock& block, std::uint32_t path,
                         std::size_t lane) {
     const Hit& hit = block.hits[path];
-    const InstanceView& instance = context.scene.instances[hit.instance];
+    InstanceView room;
+    const InstanceView& instance =
+        instance_at(context.scene, hit.instance, block.rays.time[path], room);
     const MeshView& mesh = context.scene.meshes[instance.mesh];
-    if (mesh.kind != PrimitiveKind::kTriangle) return false;
+    if (is_round(mesh.kind)) return false;
     const std::size_t first = 3 * std::size_t{hit.primitive};
+    const bool moves = mesh.kind == PrimitiveKind::kMovingTriangle;
+    if (HWY_UNLIKELY(moves)) put_moving(mesh, hit.primitive, block.rays.time[path], lane);
     const bool is_smooth = mesh.normals && (!mesh.tri2smooth || mesh.tri2smooth[hit.primitive]);
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3 && !moves; ++k) {
       const int corner = 3 * static_cast<int>(k);
       put(kCorners + corner, mesh.vtx2xyz + 3 * std::size_t{mesh.tri2vtx[first + k]}, 3, lane);
       if (is_smooth) {

@@ -47,6 +47,40 @@ struct Polygons {
   }
 };
 
+/// A mesh that deforms: `move(position, time)` at 2 k + 1 times, the middle one at rest; smooth
+/// ones with normals in time.
+template <class Move>
+std::shared_ptr<const Mesh> deforming(const Polygons& rest, int others, const Move& move,
+                                      Builder builder = Builder::kLinear) {
+  Polygons middle = rest;
+  std::vector<float> positions, normals;
+  for (int i = 0; i <= others; ++i) {
+    const double time = double(i) / others;
+    std::vector<float> moved;
+    for (std::size_t v = 0; v < rest.vtx2xyz.size(); v += 3) {
+      const Vec3d p = move(Vec3d(rest.vtx2xyz[v], rest.vtx2xyz[v + 1], rest.vtx2xyz[v + 2]), time);
+      for (int c = 0; c < 3; ++c) moved.push_back(static_cast<float>(p[c]));
+    }
+    std::vector<float> turned;
+    for (std::size_t n = 0; n < rest.corner2normal.size(); n += 3) {
+      const Vec3d tilted(rest.corner2normal[n], rest.corner2normal[n + 1] + 0.5 * time,
+                         rest.corner2normal[n + 2]);
+      for (int c = 0; c < 3; ++c) turned.push_back(static_cast<float>(glm::normalize(tilted)[c]));
+    }
+    if (2 * i == others) {
+      middle.vtx2xyz = moved;
+      middle.corner2normal = turned;
+      continue;
+    }
+    positions.insert(positions.end(), moved.begin(), moved.end());
+    normals.insert(normals.end(), turned.begin(), turned.end());
+  }
+  MeshInput input = middle.input("deforming");
+  input.motion_positions = positions;
+  input.motion_normals = normals;
+  return Mesh::build(input, builder, shared_pool(), Cancel());
+}
+
 /// One parallelogram: corner, and the two edges from it.
 inline Polygons quad(const Vec3d& corner, const Vec3d& a, const Vec3d& b) {
   Polygons p;

@@ -35,7 +35,7 @@ class TestScene {
     instance.local_from_world = Mat3(glm::inverse(world_from_local));
     instance.position = position;
     instance.mesh = mesh;
-    instance.mask = mask;
+    instance.mask = mask & 0xffu;
     place_instance(instance, entries_[mesh]->tree.bounds);
     instances_.push_back(instance);
   }

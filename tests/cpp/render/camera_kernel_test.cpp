@@ -99,5 +99,27 @@ TEST(CameraKernel, EveryLensPanoramaAndEye) {
   }
 }
 
+TEST(CameraKernel, MovesZoomsAndOpensAsOneRay) {
+  const FilterTable filter(PixelFilter::kBlackmanHarris, 1.5f);
+  CameraDesc camera = camera_at({5, -4, 3}, {0, 0, 0.8}, 150, 90);
+  const auto check = [&] {
+    const auto scene = committed(make_scene({{sphere(8, {0, 0, 0}, 1.0, false).mesh()}}, camera));
+    expect_equal_to_scalar(make_context(*scene, Settings{}, filter.view()));
+  };
+  camera.shutter = {{0.0f, 1.0f, 0.3f}, true, 0.4};
+  check();
+  const Mat4d rest = glm::inverse(glm::lookAt(Vec3d(5, -4, 3), Vec3d(0, 0, 0.8), Vec3d(0, 0, 1)));
+  for (const double x : {-0.5, 0.0, 1.0}) {
+    camera.motion.poses.push_back(
+        glm::rotate(glm::translate(Mat4d(1.0), Vec3d(x, 0, 0)), 0.3 * x, Vec3d(0, 0, 1)) * rest);
+  }
+  check();
+  camera.motion.zoom_open = 1.3;
+  camera.lens = {0.2, 5, 0.7, 1.4, 5.0};
+  check();
+  camera.shutter = {};
+  check();
+}
+
 }  // namespace
 }  // namespace komorebi::testing

@@ -110,6 +110,34 @@ TEST_F(Dump, KeepsLensPanoramaAndEye) {
   check();
 }
 
+TEST_F(Dump, KeepsMotion) {
+  const auto original = scene();
+  CameraDesc camera = original->camera_desc();
+  const Mat4d rest =
+      glm::inverse(glm::lookAt(Vec3d(4005, -4, 3), Vec3d(4000, 0, 0.5), Vec3d(0, 0, 1)));
+  for (const double t : {-0.1, 0.0, 0.2}) {
+    camera.motion.poses.push_back(glm::translate(Mat4d(1.0), Vec3d(t, 0, 0)) * rest);
+  }
+  camera.motion.zoom_open = 1.2;
+  camera.shutter = {{0.5f, 1.0f, 0.25f}, true, 0.3};
+  original->set_camera(camera);
+  const auto wave = deforming(sphere(8, {4000, 0, 1}, 1.0, true), 2,
+                              [](const Vec3d& p, double t) { return p + Vec3d(t, 0.5 * t, 0.0); });
+  std::vector<Mat4d> poses;
+  for (int i = 0; i < 5; ++i) poses.push_back(glm::translate(Mat4d(1.0), Vec3d(0.0, 0.3 * i, 0.0)));
+  const InstanceInput waving{original->add_mesh(wave), poses[2]};
+  original->add_moving_instances({&waving, 1}, poses, "waving");
+  const InstanceInput still{0, glm::translate(Mat4d(1.0), Vec3d(0, 0, -1))};
+  original->add_instances({&still, 1}, "still");
+  write_dump(path_, *original, settings());
+  const std::string first = bytes();
+  const DumpedRender read = read_dump(path_, shared_pool(), Cancel());
+  write_dump(path_, *read.scene, read.settings);
+  EXPECT_EQ(bytes(), first);
+  EXPECT_EQ(render(committed(read.scene), read.settings), render(committed(original), settings()));
+  EXPECT_TRUE(original->view().moves);
+}
+
 TEST_F(Dump, CutShortAnywhereIsRefused) {
   write_dump(path_, *scene(), settings());
   const std::string whole = bytes();
