@@ -28,8 +28,7 @@ inline Corners corners_at(const float* rows, std::size_t count, const std::uint3
   for (int k = 0; k < 3; ++k) {
     const float* from = rows + 3 * (place.set * count + three[k]);
     const float* to = from + 3 * count;
-    at.corner[k] =
-        Vec3(s * from[0] + f * to[0], s * from[1] + f * to[1], s * from[2] + f * to[2]);
+    at.corner[k] = Vec3(s * from[0] + f * to[0], s * from[1] + f * to[1], s * from[2] + f * to[2]);
   }
   return at;
 }

@@ -14,7 +14,8 @@ namespace komorebi::testing {
 
 using Way = std::function<Mat4d(double)>;
 
-inline void add_moving(Scene& scene, const std::shared_ptr<const Mesh>& mesh, const Way& way, int count) {
+inline void add_moving(Scene& scene, const std::shared_ptr<const Mesh>& mesh, const Way& way,
+                       int count) {
   std::vector<Mat4d> poses;
   for (int i = 0; i < count; ++i) poses.push_back(way(double(i) / (count - 1)));
   const InstanceInput instance{scene.add_mesh(mesh), poses[static_cast<std::size_t>(count / 2)]};
@@ -68,7 +69,7 @@ inline std::uint32_t expect_brute_force(const Scene& scene, const RayList& rays)
 
 /// The alpha of a row of pixels of an orthographic picture of [−1, 1]², seen from above.
 inline std::vector<double> coverage(const std::shared_ptr<Scene>& scene, std::uint32_t width,
-                             std::uint32_t row) {
+                                    std::uint32_t row) {
   Settings settings;
   settings.samples = 8192;
   settings.light_samples = 1;

@@ -1,5 +1,5 @@
-// Meshes that deform: the trees against brute force at each ray's time, still meshes of that time, and
-// coverage in closed form.
+// Meshes that deform: the trees against brute force at each ray's time, still meshes of that time,
+// and coverage in closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
