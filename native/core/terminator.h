@@ -36,20 +36,22 @@ inline float convex_reach(const Vec3 (&corner)[3], const Vec3 (&normal)[3], cons
 
 /// From a hit on a smooth triangle to the surface that its normals tell of, in world space; null
 /// where the triangle is flat. `geometric_normal` is on the side that light comes from.
-inline Vec3 smooth_lift(const InstanceView& instance, const MeshView& mesh, const Hit& hit,
+inline Vec3 smooth_lift(const SceneView& scene, const Hit& hit, float time,
                         const Vec3& geometric_normal) {
-  const bool smooth = mesh.kind == PrimitiveKind::kTriangle && mesh.normals &&
+  const MeshView& mesh = scene.meshes[scene.instances[hit.instance].mesh];
+  const bool smooth = !is_round(mesh.kind) && mesh.normals &&
                       (!mesh.tri2smooth || mesh.tri2smooth[hit.primitive]);
   if (!smooth) return Vec3(0.0f);
   // In the world's lengths and angles: a stretched object's surface is bent otherwise.
+  InstanceView room;
+  const InstanceView& instance = instance_at(scene, hit.instance, time, room);
   const Mat3 normal_transform = glm::transpose(instance.local_from_world);
+  const Corners corners = detail::triangle_corners(mesh, hit.primitive, time);
+  const Corners normals = corner_normals(mesh, hit.primitive, time);
   Vec3 corner[3], normal[3];
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t at = 3 * std::size_t{hit.primitive} + k;
-    const float* p = mesh.vtx2xyz + 3 * std::size_t{mesh.tri2vtx[at]};
-    const float* n = mesh.normals + 3 * std::size_t{mesh.tri2normal[at]};
-    corner[k] = instance.world_from_local * Vec3(p[0], p[1], p[2]);
-    normal[k] = detail::unit_or(normal_transform * Vec3(n[0], n[1], n[2]), geometric_normal);
+  for (int k = 0; k < 3; ++k) {
+    corner[k] = instance.world_from_local * corners.corner[k];
+    normal[k] = detail::unit_or(normal_transform * normals.corner[k], geometric_normal);
   }
   const float v = hit.u, w = hit.v, u = 1.0f - v - w;
   const Vec3 at = u * corner[0] + v * corner[1] + w * corner[2];

@@ -79,13 +79,14 @@ LightSample sample_light(const RenderContext& context, const SurfacePoint& point
   return sample_ambient(context, point, Vec2(to_unit_float(bits.x), to_unit_float(bits.y)));
 }
 
-Terminator terminator(const RenderContext& context, const Hit& hit, const Vec3& geometric_normal) {
+Terminator terminator(const RenderContext& context, const Hit& hit, float time,
+                      const Vec3& geometric_normal) {
   Terminator result;
   if (!context.has_terminators) return result;
   const InstanceView& instance = context.scene.instances[hit.instance];
   const ObjectInfo object = context.tables->object(instance.object_index);
   if (object.terminator_cutoff > 0.0f) {
-    result.lift = smooth_lift(instance, context.scene.meshes[instance.mesh], hit, geometric_normal);
+    result.lift = smooth_lift(context.scene, hit, time, geometric_normal);
     if (result.lift != Vec3(0.0f)) result.cutoff = object.terminator_cutoff;
   }
   result.frequency = object.terminator_frequency;

@@ -19,8 +19,9 @@ struct LightSample {
 LightSample sample_light(const RenderContext& context, const SurfacePoint& point,
                          const Sampler& sampler, std::uint32_t index);
 
-/// The shadow terminator of a point, on the side that light comes from.
-Terminator terminator(const RenderContext& context, const Hit& hit, const Vec3& geometric_normal);
+/// The shadow terminator of a point at its ray's time, on the side that light comes from.
+Terminator terminator(const RenderContext& context, const Hit& hit, float time,
+                      const Vec3& geometric_normal);
 
 /// Multiplies what a ray brings by what the terminator leaves of it, and returns how much of the
 /// lift the ray starts at. Cosines to the shading normal (positive) and the geometric one.

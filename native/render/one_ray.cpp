@@ -47,7 +47,7 @@ template <class Visit>
 void for_each_light_ray(const RenderContext& context, const SurfacePoint& point, const Hit& hit,
                         const Sampler& sampler, std::uint32_t sample, float time,
                         const Visit& visit) {
-  const Terminator end = terminator(context, hit, point.geometric_normal);
+  const Terminator end = terminator(context, hit, time, point.geometric_normal);
   SurfacePoint lit = point;
   if (context.bends_round && end.cutoff > 0.0f) lit.geometric_normal = point.normal;
   for (std::uint32_t j = 0; j < context.light_samples; ++j) {
