@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/instance_motion.h"
 #include "core/math.h"
 #include "core/surface_point.h"
 
@@ -39,12 +38,13 @@ inline float convex_reach(const Vec3 (&corner)[3], const Vec3 (&normal)[3], cons
 /// where the triangle is flat. `geometric_normal` is on the side that light comes from.
 inline Vec3 smooth_lift(const SceneView& scene, const Hit& hit, float time,
                         const Vec3& geometric_normal) {
+  const MeshView& mesh = scene.meshes[scene.instances[hit.instance].mesh];
+  const bool smooth = !is_round(mesh.kind) && mesh.normals &&
+                      (!mesh.tri2smooth || mesh.tri2smooth[hit.primitive]);
+  if (!smooth) return Vec3(0.0f);
+  // In the world's lengths and angles: a stretched object's surface is bent otherwise.
   InstanceView room;
   const InstanceView& instance = instance_at(scene, hit.instance, time, room);
-  const MeshView& mesh = scene.meshes[instance.mesh];
-  if (is_round(mesh.kind) || !mesh.normals) return Vec3(0.0f);
-  if (mesh.tri2smooth && !mesh.tri2smooth[hit.primitive]) return Vec3(0.0f);
-  // In the world's lengths and angles: a stretched object's surface is bent otherwise.
   const Mat3 normal_transform = glm::transpose(instance.local_from_world);
   const Corners corners = detail::triangle_corners(mesh, hit.primitive, time);
   const Corners normals = corner_normals(mesh, hit.primitive, time);

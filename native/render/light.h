@@ -19,7 +19,7 @@ struct LightSample {
 LightSample sample_light(const RenderContext& context, const SurfacePoint& point,
                          const Sampler& sampler, std::uint32_t index);
 
-/// The shadow terminator of a point, on the side that light comes from.
+/// The shadow terminator of a point at its ray's time, on the side that light comes from.
 Terminator terminator(const RenderContext& context, const Hit& hit, float time,
                       const Vec3& geometric_normal);
 

@@ -91,14 +91,15 @@ def test_what_does_not_fit_is_refused() -> None:
     with pytest.raises(ValueError, match="even number of times"):
         cube_scene(motion_positions=shapes.cube()[0][None])
     scene = cube_scene()
-    for camera in (
-        {"motion": {}},
-        {"motion": {"matrices": poses(0, 1, 2)}},
-        {"motion": {"matrices": poses(0, 0, 0) @ np.linalg.inv(VIEW), "zoom": 1.0}},
-        {"shutter": {"curve": np.zeros(4, np.float32)}},
-        {"shutter": {"rolling_duration": 2.0}},
+    still = poses(0, 0, 0) @ np.linalg.inv(VIEW)
+    for camera, sentence in (
+        ({"motion": {}}, "needs matrices"),
+        ({"motion": {"matrices": poses(0, 1, 2)}}, "not where the camera is"),
+        ({"motion": {"matrices": still, "zoom": 1.0}}, "has no"),
+        ({"shutter": {"curve": np.zeros(4, np.float32)}}, "shutter curve"),
+        ({"shutter": {"rolling_duration": 2.0}}, "rolling shutter"),
     ):
-        with pytest.raises(ValueError):
+        with pytest.raises(ValueError, match=sentence):
             scene.set_camera("PERSPECTIVE", CAMERA, 0.1, 100.0, 64, 64, **camera)
 
 

@@ -5,7 +5,7 @@
 set -euo pipefail
 objdump=$1 library=$2
 
-if ! "$objdump" --file-headers "$library" | grep -q 'x86-64'; then
+if ! "$objdump" --file-headers "$library" | grep 'x86-64' > /dev/null; then
   echo "no x86-64 objects: nothing to look for"
   exit 0
 fi

@@ -142,6 +142,9 @@ std::shared_ptr<Scene> moving_scene(Builder builder = Builder::kLinear) {
   const InstanceInput waving{scene->add_mesh(wave), glm::translate(Mat4d(1.0), Vec3d(1, 1.5, 1))};
   scene->add_instances({&waving, 1}, "waving");
   move(wave, [](double t) { return glm::translate(Mat4d(1.0), Vec3d(-2.5, -1.0 + t, 1.0)); });
+  SceneTables tables;
+  tables.objects = {{1.0f, 101, 201, 0.3f, 1.2f}};
+  scene->set_tables(std::move(tables));
   scene->set_world_environment(gradient_map(), 0.7, Mat3d(1.0));
   return committed(scene);
 }
