@@ -39,8 +39,8 @@ inline float convex_reach(const Vec3 (&corner)[3], const Vec3 (&normal)[3], cons
 inline Vec3 smooth_lift(const SceneView& scene, const Hit& hit, float time,
                         const Vec3& geometric_normal) {
   const MeshView& mesh = scene.meshes[scene.instances[hit.instance].mesh];
-  const bool smooth = !is_round(mesh.kind) && mesh.normals &&
-                      (!mesh.tri2smooth || mesh.tri2smooth[hit.primitive]);
+  const bool smooth =
+      !is_round(mesh.kind) && mesh.normals && (!mesh.tri2smooth || mesh.tri2smooth[hit.primitive]);
   if (!smooth) return Vec3(0.0f);
   // In the world's lengths and angles: a stretched object's surface is bent otherwise.
   InstanceView room;

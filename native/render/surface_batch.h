@@ -62,8 +62,8 @@ class SurfaceBatch {
     terminators_.clear();
     if (!context.has_terminators) return;
     for (std::uint32_t i = 0; i < count_; ++i) {
-      terminators_.push_back(komorebi::terminator(context, hits[path_[i]], rays.time[path_[i]],
-                                                  geometric_normal(i)));
+      terminators_.push_back(
+          komorebi::terminator(context, hits[path_[i]], rays.time[path_[i]], geometric_normal(i)));
     }
     if (!context.bends_round) return;
     for (std::size_t c = 0; c < 3; ++c) {
