@@ -16,6 +16,11 @@ def request(path: str) -> None:
     _path = path
 
 
+def is_wanted() -> bool:
+    """Whether the next frame is to be written, for which the core keeps what it was given."""
+    return _path is not None or bool(os.environ.get(VARIABLE))
+
+
 def write(scene: Any, settings: Any) -> bool:
     """Dumps if that was asked for; True when the operator did, which wants no picture.
 

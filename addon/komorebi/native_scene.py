@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from . import cache
+from . import cache, dump
 from .cryptomatte import name_id
 from .mesh_cache import KnownMesh, digest
 from .scene_data import (
@@ -83,7 +83,7 @@ def build(
         )  # fmt: skip
     except ValueError as error:
         raise ValueError(str(error).replace("camera:", f'camera "{camera.name}":', 1)) from error
-    scene.commit(threads=threads, cancel=cancel)
+    scene.commit(threads=threads, cancel=cancel, keep_inputs=dump.is_wanted())
     return scene
 
 

@@ -135,8 +135,8 @@ void Scene::set_world_environment(std::shared_ptr<const Environment> environment
 
 void Scene::set_camera(const CameraDesc& camera) {
   require_open();
-  // Refuse what cannot be inverted.
-  CameraTables(camera, Vec3d(0.0), make_camera(camera, Vec3d(0.0)));
+  // Refuses what cannot be inverted.
+  [[maybe_unused]] const CameraTables refused(camera, Vec3d(0.0), make_camera(camera, Vec3d(0.0)));
   camera_desc_ = camera;
   has_camera_ = true;
 }
