@@ -33,6 +33,7 @@ ELSEWHERE = {
     "kink_extra_steps": "drawn where strands have children that wind",
     "matrix_world": "by Transform",
     "shadow_terminator_offset": "of Cycles up to 4.1, drawn as the object's own after that",
+    "use_adaptive_subdivision": "read to say that it is ignored",
     "use_nodes": "always on from 5.0, drawn before",
 }
 NO_SETTING = {  # names of other types too, which are what is read
