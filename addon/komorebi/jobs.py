@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import bpy
 from bpy.app.handlers import persistent
 
-from . import cache, discard, reporting
+from . import cache, discard, handlers, reporting
 
 _stack: list[Any] = []
 
@@ -73,13 +72,9 @@ _HANDLERS = (
 
 
 def register() -> None:
-    for name, function in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(function)
+    handlers.add(_HANDLERS)
 
 
 def unregister() -> None:
     _stack.clear()
-    for name, function in _HANDLERS:
-        handlers = getattr(bpy.app.handlers, name)
-        if function in handlers:
-            handlers.remove(function)
+    handlers.remove(_HANDLERS)

@@ -12,7 +12,7 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
-from . import cache, jobs
+from . import cache, handlers, jobs
 from .engine import ENGINE_ID
 
 _was_persistent = False  # the last job was rendered with Persistent Data
@@ -57,13 +57,9 @@ _HANDLERS = (
 
 def register() -> None:
     cache.clear()
-    for name, function in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(function)
+    handlers.add(_HANDLERS)
 
 
 def unregister() -> None:
     cache.clear()
-    for name, function in _HANDLERS:
-        handlers = getattr(bpy.app.handlers, name)
-        if function in handlers:
-            handlers.remove(function)
+    handlers.remove(_HANDLERS)

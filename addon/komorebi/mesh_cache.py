@@ -14,7 +14,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from . import cache
-from .scene_data import CurveData, MeshKey, PointData
+from .scene_data import CurveData, KnownShape, MeshKey, PointData
 
 
 @dataclass(slots=True)
@@ -30,10 +30,12 @@ class KnownMesh:
         return 0 if self.mesh is None else int(self.mesh.byte_count)
 
 
-def find(key: MeshKey) -> Any | None:
-    """The core's mesh of this key, if it is known."""
+def find(name: str, key: MeshKey) -> KnownShape | None:
+    """What the core has of this key, if it is known, for the object `name`."""
     known = cache.peek(key.geometry)
-    return known.mesh if isinstance(known, KnownMesh) and known.shading == key.shading else None
+    if not isinstance(known, KnownMesh) or known.mesh is None or known.shading != key.shading:
+        return None
+    return KnownShape(name, key, known.mesh)
 
 
 def round_key(core: Any, data: CurveData | PointData) -> MeshKey:

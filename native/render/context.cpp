@@ -54,11 +54,13 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.passes =
       make_pass_layout(settings.passes, scene.has_catchers(), settings.film_transparent);
   context.tables = &scene.tables();
-  const bool terminators = context.has_terminators = scene.tables().has_terminators();
+  const bool lifts = scene.tables().lifts_rays();
   // Cycles lifts the rays to lights and those of ambient occlusion, but not what it samples by the
   // surface, which is all there is under an even sky.
-  context.lifts_rays = terminators && (ao || !scene.world_is_uniform());
-  context.cuts_cosines = terminators && !ao;
+  context.lifts_rays = lifts && (ao || !scene.world_is_uniform());
+  context.cuts_cosines = !ao && scene.tables().cuts_cosines();
+  context.has_terminators =
+      context.lifts_rays || context.cuts_cosines || (lifts && context.passes.keeps_ambient());
   context.bends_round = context.lifts_rays && !ao;
   context.origin = scene.origin();
   context.first_sample = settings.sample_offset;

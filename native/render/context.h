@@ -26,7 +26,7 @@ struct RenderContext {
   float cosine_share = 1.0f;  ///< share of light rays drawn from the cosine; the rest from the map
   std::uint32_t light_mask = kMaskShadow;  ///< of light rays
   /// Whether rays may leave above coarse smooth surfaces, and then go below their own triangle, or
-  /// cosines be cut (core/terminator.h).
+  /// cosines be cut (core/terminator.h). Points have a terminator where any of their rays heeds it.
   bool has_terminators = false, lifts_rays = false, bends_round = false, cuts_cosines = false;
   VertexDimension light_dimension = kVertexLightDirection;  ///< that light rays are drawn by
   bool transparent = false;

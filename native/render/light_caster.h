@@ -32,9 +32,9 @@ class LightCaster {
             const Visit& visit) {
     block_.draw(context_, surfaces.light_block(context_, begin, end));
     terminate_rays(surfaces, begin, end);
-    tally_.cast -= rays_;
+    const std::uint64_t before = rays_;
     tally_.blocked += trace(surfaces, begin, end, context_.light_mask, kDrawn, kBlocked);
-    tally_.cast += rays_;
+    tally_.cast += rays_ - before;
     for_each_drawn(end - begin, [&](std::uint32_t p, std::uint32_t place) {
       visit(begin + p, block_.direction(place), block_.contribution(place),
             !(state_[place] & kBlocked));
@@ -58,14 +58,15 @@ class LightCaster {
   }
 
  private:
-  /// Of a ray: drawn with light to bring, lifted from its point, blocked; to be traced again among
-  /// shadow catchers, blocked by one.
+  /// Of a ray: drawn with light to bring, lifted from its point, below its own triangle, blocked;
+  /// to be traced again among shadow catchers, blocked by one.
   enum State : std::uint8_t {
     kDrawn = 1,
     kLifted = 2,
-    kBlocked = 4,
-    kAgain = 8,
-    kBlockedAgain = 16
+    kBelow = 4,
+    kBlocked = 8,
+    kAgain = 16,
+    kBlockedAgain = 32
   };
 
   /// Calls visit(point, place) in the order drawn.
@@ -92,12 +93,12 @@ class LightCaster {
         state_[place] = contribution != Vec3(0.0f) ? kDrawn : 0;
         if (plain || !state_[place]) continue;
         const Vec3 direction = block_.direction(place);
-        share_[place] =
-            terminate(context_, t, glm::dot(direction, surfaces.normal(begin + p)),
-                      glm::dot(direction, surfaces.geometric_normal(begin + p)), contribution);
+        const float cosine = glm::dot(direction, surfaces.geometric_normal(begin + p));
+        share_[place] = terminate(context_, t, glm::dot(direction, surfaces.normal(begin + p)),
+                                  cosine, contribution);
         if (context_.cuts_cosines && t.frequency > 1.0f)
           block_.set_contribution(place, contribution);
-        if (share_[place] > 0.0f) state_[place] |= kLifted;
+        if (share_[place] > 0.0f) state_[place] |= cosine > 0.0f ? kLifted : kLifted | kBelow;
       }
     }
   }
@@ -115,9 +116,7 @@ class LightCaster {
         const std::uint32_t place = block_.place(p, j);
         if (!(state_[place] & wanted)) continue;
         if (state_[place] & kLifted) {
-          const Vec3 direction = block_.direction(place);
-          const bool above = glm::dot(direction, surfaces.geometric_normal(begin + p)) > 0.0f;
-          lifted_.push(surfaces, begin + p, place, share_[place], !above);
+          lifted_.push(surfaces, begin + p, place, share_[place], state_[place] & kBelow);
         } else {
           places_.push_back(place);
         }

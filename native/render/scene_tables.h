@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -26,12 +27,14 @@ struct SceneTables {
   /// a slot beyond the last has the last.
   std::vector<std::uint32_t> slot_begin, slots;
 
-  /// Whether any object has a shadow terminator of its own.
-  bool has_terminators() const {
-    for (const ObjectInfo& o : objects) {
-      if (o.terminator_cutoff > 0.0f || o.terminator_frequency > 1.0f) return true;
-    }
-    return false;
+  /// Whether rays from any object may be lifted, or its cosines cut.
+  bool lifts_rays() const {
+    return std::any_of(objects.begin(), objects.end(),
+                       [](const ObjectInfo& o) { return o.terminator_cutoff > 0.0f; });
+  }
+  bool cuts_cosines() const {
+    return std::any_of(objects.begin(), objects.end(),
+                       [](const ObjectInfo& o) { return o.terminator_frequency > 1.0f; });
   }
 
   ObjectInfo object(std::uint32_t index) const {

@@ -56,10 +56,10 @@ def test_dtypes_and_sharing():
 
 
 def test_arrays_are_what_the_core_wants():
-    from komorebi.export.mesh import export_mesh
+    from komorebi.export.mesh import MeshReader
 
     bpy.data.objects["Cube"].data.polygons[0].use_smooth = True
-    mesh = export_mesh(bpy.data.meshes["Cube"], "Cube")
+    mesh = MeshReader(bpy.data.meshes["Cube"], "Cube").data()
     assert mesh.positions.dtype == np.float32
     assert mesh.positions.shape == (8, 3)
     assert mesh.corner_verts.dtype == np.int32
@@ -77,14 +77,14 @@ def test_arrays_are_what_the_core_wants():
 
 def test_same_arrays_through_every_route():
     """The fast ways of `compat` against the plain properties of vertices, loops and polygons."""
-    from komorebi.export.mesh import export_mesh
+    from komorebi.export.mesh import MeshReader
 
     bpy.ops.mesh.primitive_monkey_add()
     monkey = bpy.context.object.data
     for index, polygon in enumerate(monkey.polygons):
         polygon.use_smooth = index % 3 == 0
         polygon.material_index = index % 2
-    data = export_mesh(monkey, "Monkey")
+    data = MeshReader(monkey, "Monkey").data()
     assert np.array_equal(data.positions, [v.co[:] for v in monkey.vertices])
     assert np.array_equal(data.corner_verts, [c.vertex_index for c in monkey.loops])
     assert np.array_equal(data.face_offsets[:-1], [p.loop_start for p in monkey.polygons])
@@ -101,21 +101,21 @@ def test_quads_are_split_as_blender_does():
     rng = np.random.default_rng(3)
     for vertex in mesh.vertices:  # bent and concave quads
         vertex.co = np.array(vertex.co) + rng.normal(0, 0.08, 3)
-    from komorebi.export.mesh import export_mesh
+    from komorebi.export.mesh import MeshReader
 
-    data = export_mesh(mesh, "Monkey")
+    data = MeshReader(mesh, "Monkey").data()
     assert data.tri2corner is None
     assert np.array_equal(triangles_of_core(data), loop_triangles(mesh))
 
 
 def test_ngons_come_from_blender():
-    from komorebi.export.mesh import export_mesh
+    from komorebi.export.mesh import MeshReader
 
     mesh = bpy.data.meshes.new("Ngons")
     angles = np.linspace(0, 2 * np.pi, 10, endpoint=False)
     star = [(np.cos(a) * r, np.sin(a) * r, 0) for a, r in zip(angles, [1, 0.4] * 5, strict=True)]
     mesh.from_pydata([*star, (0, 0, 1)], [], [tuple(range(10)), (0, 1, 10), (2, 3, 4, 10)])
-    data = export_mesh(mesh, "Ngons")
+    data = MeshReader(mesh, "Ngons").data()
     assert np.array_equal(triangles_of_core(data), loop_triangles(mesh))
     assert len(data.tri2face) == 8 + 1 + 2
 

@@ -13,11 +13,6 @@ from ..scene_data import FloatArray, IntArray, MeshData, MeshKey
 MAX_NATIVE_CORNERS = 4  # the core triangulates triangles and quads by Blender's own rule
 
 
-def export_mesh(mesh: Any, name: str, with_uvs: bool = False) -> MeshData | None:
-    """The arrays of an evaluated mesh; None when it has no face."""
-    return MeshReader(mesh, name, with_uvs).data() if len(mesh.polygons) else None
-
-
 class MeshReader:
     """Reads an evaluated mesh that has faces: first what tells it from others, then the rest.
 
@@ -25,7 +20,7 @@ class MeshReader:
     and is not read when the mesh is known.
     """
 
-    def __init__(self, mesh: Any, name: str, with_uvs: bool) -> None:
+    def __init__(self, mesh: Any, name: str, with_uvs: bool = False) -> None:
         self._mesh = mesh
         self._name = name
         self._positions = compat.positions(mesh)

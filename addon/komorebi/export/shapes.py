@@ -6,7 +6,7 @@ from typing import Any
 
 from .. import compat, core, mesh_cache
 from ..errors import RenderCancelled
-from ..scene_data import AnyMesh, CurveData, KnownShape, PointData
+from ..scene_data import AnyMesh, CurveData, PointData
 from ..unchanged import Unchanged
 from .curves import export_curves
 from .hair import export_hair, hair_systems
@@ -66,9 +66,9 @@ class ShapeExporter:
             raise RenderCancelled
         address = (obj.data.as_pointer(), obj.original.as_pointer(), self._wanted.uvs)
         key = self._unchanged.key(address)
-        known = None if key is None else mesh_cache.find(key)
-        if key is not None and known is not None:
-            return KnownShape(name_of(obj), key, known)
+        known = None if key is None else mesh_cache.find(name_of(obj), key)
+        if known is not None:
+            return known
         exported = self._read(obj)
         if exported is not None and exported.key is not None and not compat.is_deferred(obj):
             self._unchanged.remember(address, exported.key)
@@ -85,9 +85,9 @@ class ShapeExporter:
     def _read_mesh(self, mesh: Any, name: str) -> AnyMesh:
         reader = MeshReader(mesh, name, self._wanted.uvs)
         key = reader.key(self._core)
-        known = mesh_cache.find(key)
+        known = mesh_cache.find(name, key)
         if known is not None:
-            return KnownShape(name, key, known)
+            return known
         data = reader.data()
         data.key = key
         return data
@@ -96,8 +96,7 @@ class ShapeExporter:
         if data is None:
             return None
         data.key = mesh_cache.round_key(self._core, data)
-        known = mesh_cache.find(data.key)
-        return data if known is None else KnownShape(data.name, data.key, known)
+        return mesh_cache.find(data.name, data.key) or data
 
     def _add(self, exported: AnyMesh | None) -> int:
         if exported is None:
