@@ -23,6 +23,7 @@ import deforming
 import demo
 import features
 import instancing
+import motion
 import settings
 import strands
 import visibility
@@ -38,6 +39,7 @@ SCENES: dict[str, Callable[[], None]] = {
     **cameras.SCENES,
     **instancing.SCENES,
     **deforming.SCENES,
+    **motion.SCENES,
 }
 
 

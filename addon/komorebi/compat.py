@@ -282,3 +282,33 @@ def panorama_settings(camera: Any) -> Any | None:
     if "panorama_type" in camera.bl_rna.properties:
         return camera
     return getattr(camera, "cycles", None)
+
+
+def motion_steps(obj: Any) -> int:
+    """Cycles' number for how often an object's motion is looked at, 1 without Cycles; 0: its motion
+    blur is switched off."""
+    settings = cycles_or(obj, None)
+    if settings is None:
+        return 1
+    return max(1, settings.motion_steps) if settings.use_motion_blur else 0
+
+
+def uses_deform_motion(obj: Any) -> bool:
+    """Whether an object is blurred by how it deforms, too."""
+    settings = cycles_or(obj, None)
+    return settings is None or bool(settings.use_deform_motion)
+
+
+def motion_blur_position(scene: Any) -> str:
+    """START, CENTER or END: what of the shutter's time the frame is."""
+    if hasattr(scene.render, "motion_blur_position"):  # from 4.1
+        return str(scene.render.motion_blur_position)
+    return str(getattr(cycles_or(scene, None), "motion_blur_position", "CENTER"))
+
+
+def rolling_shutter(scene: Any) -> float | None:
+    """The exposure of each row in shutter times, if rows are exposed one after the other."""
+    settings = cycles_or(scene, None)
+    if settings is None or settings.rolling_shutter_type != "TOP":
+        return None
+    return float(settings.rolling_shutter_duration)

@@ -13,7 +13,6 @@ from .denoise import library as oidn
 from .denoise import run as denoise
 from .errors import RenderCancelled, RenderError
 from .export import export_scene
-from .export.camera import export_camera
 from .export.names import name_of
 from .export.settings import export_settings
 from .framing import Region, render_region
@@ -69,9 +68,8 @@ def export_frame(engine: Any, depsgraph: Any) -> Frame | None:
     names = active_views(scene)
     settings = export_settings(scene, depsgraph.view_layer, passes, region)
     unchanged = _unchanged(engine, depsgraph)
-    data = export_scene(engine, depsgraph, names[0], settings["passes"], unchanged)
-    views = [View(names[0], data.camera)]
-    views += [View(name, export_camera(engine, depsgraph, name)) for name in names[1:]]
+    data = export_scene(engine, depsgraph, names, settings["passes"], unchanged)
+    views = [View(name, camera) for name, camera in data.cameras.items()]
     mattes = _matte_names(data, enabled_cryptomattes(depsgraph.view_layer))
     return Frame(layer, region, passes, settings, oidn, data, views, mattes)
 

@@ -64,7 +64,7 @@ def build(
         scene.add_instances(
             indices[group.mesh], group.matrices, group.object_index,
             mask=group.mask, flags=group.flags, material_slots=group.material_slots,
-            name=group.name,
+            name=group.name, motion=group.motion,
         )  # fmt: skip
     scene.set_tables(**tables(data))
     world = data.world
@@ -80,6 +80,7 @@ def build(
             camera.kind, camera.matrix, camera.clip_start, camera.clip_end,
             camera.width, camera.height,
             lens=camera.lens, panorama=camera.panorama, stereo=camera.stereo,
+            shutter=camera.shutter, motion=camera.motion,
         )  # fmt: skip
     except ValueError as error:
         raise ValueError(str(error).replace("camera:", f'camera "{camera.name}":', 1)) from error
@@ -153,6 +154,7 @@ def _native_mesh(
         tri2corner=mesh.tri2corner, tri2face=mesh.tri2face, corner_normals=mesh.corner_normals,
         vertex_normals=mesh.vertex_normals, smooth_faces=mesh.smooth_faces,
         face_materials=mesh.face_materials, corner_uvs=mesh.corner_uvs,
+        motion_positions=mesh.motion_positions, motion_normals=mesh.motion_normals,
         builder=builder, threads=threads, cancel=cancel, same_geometry=same_geometry,
     )  # fmt: skip
 

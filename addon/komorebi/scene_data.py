@@ -5,7 +5,7 @@ World space is Blender's: metres, Z up. Rows run bottom-up, colours are scene-li
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -42,6 +42,10 @@ class MeshData:
     smooth_faces: BoolArray | None = None  # [faces]; None: all smooth if there are normals
     face_materials: IntArray | None = None  # [faces]; None: all slot 0
     corner_uvs: FloatArray | None = None  # [corners, 2]; None: no UV map, or no pass that shows it
+    # Of a mesh that deforms while the shutter is open: as `positions` and whichever normals there
+    # are, at the other times in their order; with `positions` in the middle at even ones.
+    motion_positions: FloatArray | None = None  # [2k, vertices, 3]
+    motion_normals: FloatArray | None = None  # [2k, corners or vertices, 3]; None: always the same
     key: MeshKey | None = None
 
     @property
@@ -108,6 +112,20 @@ class InstanceData:
     mask: UIntArray | None = None  # [count], bits RAY_*; None: seen by every ray
     flags: UIntArray | None = None  # [count], bits FLAG_*; None: none
     material_slots: UIntArray | None = None  # [count], index into Materials.slots; None: all 0
+    # At an odd number of even times from the opening of the shutter to the closing; `matrices` are
+    # the middle ones. None: all of them stand still.
+    motion: DoubleArray | None = None  # [count, 2k + 1, 4, 4]
+
+    def take(self, rows: NDArray[Any]) -> InstanceData:
+        """Some of the instances, by index or by a mask [count]."""
+        chosen = {
+            name: None if array is None else array[rows]
+            for name in ("mask", "flags", "material_slots", "motion")
+            for array in (getattr(self, name),)
+        }
+        return replace(
+            self, matrices=self.matrices[rows], object_index=self.object_index[rows], **chosen
+        )
 
 
 RAY_CAMERA = 1 << 0
@@ -124,7 +142,8 @@ class CameraData:
     panorama the camera's pose: world from camera, its axes right, up, back.
 
     `lens`, `panorama` and `stereo` hold numbers by the names that the core knows
-    (native/render/camera_fields.h); None: a pinhole, no panorama, no eye that turns.
+    (native/render/camera_fields.h); None: a pinhole, no panorama, no eye that turns. `shutter` and
+    `motion` likewise, as the core's set_camera takes them; None: plain, and it stands still.
     """
 
     name: str
@@ -137,6 +156,8 @@ class CameraData:
     lens: dict[str, float] | None = None
     panorama: dict[str, Any] | None = None
     stereo: dict[str, float] | None = None
+    shutter: dict[str, Any] | None = None
+    motion: dict[str, Any] | None = None
 
 
 @dataclass(slots=True)
@@ -192,10 +213,14 @@ class Materials:
 class SceneData:
     """Everything that a view layer of a frame shows."""
 
-    camera: CameraData
+    cameras: dict[str, CameraData]  # by view, "" where there is only one; the first one's first
     world: WorldData
     meshes: list[AnyMesh] = field(default_factory=list)
     instances: list[InstanceData] = field(default_factory=list)
     objects: list[ObjectData] = field(default_factory=list)
     materials: Materials = field(default_factory=Materials)
     ignored: dict[str, int] = field(default_factory=dict)  # kind of object → how many
+
+    @property
+    def camera(self) -> CameraData:
+        return next(iter(self.cameras.values()))

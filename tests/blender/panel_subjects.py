@@ -97,7 +97,7 @@ def subjects():
     cube.particle_systems[0].settings.type = "HAIR"
     yield "hair", context_of(cube)
     scene.render.use_motion_blur = scene.render.use_multiview = scene.render.use_simplify = True
-    scene.view_layers[0].use_pass_mist = True
+    scene.view_layers[0].use_pass_mist, scene.view_layers[0].samples = True, 4
     scene.komorebi.method = "WORLD_LIGHT"
     scene.komorebi.use_adaptive_sampling = True
     if hasattr(scene, "cycles_curves"):

@@ -134,6 +134,28 @@ def exported():
     return calls[-1][1]
 
 
+def exported_whole():
+    """What the open scene exports with an empty cache, so that all arrays are there."""
+    from komorebi import cache, driver
+
+    cache.clear()
+    original, kept = driver.export_scene, []
+
+    def export_scene(*args, **kwargs):
+        data = original(*args, **kwargs)
+        kept.append((data, list(data.meshes)))  # a render drops each as soon as the core has it
+        return data
+
+    driver.export_scene = export_scene
+    try:
+        bpy.ops.render.render()
+    finally:
+        driver.export_scene = original
+    ((data, meshes),) = kept
+    data.meshes[:] = meshes
+    return data
+
+
 def exported_picture(name):
     """The pass `name` of a render as it was handed to Blender [height, width, channels]."""
     from komorebi import passes

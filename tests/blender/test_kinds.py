@@ -39,31 +39,9 @@ def spread(data, name):
     raise AssertionError(f"{name} is not there")
 
 
-def exported_whole():
-    """What the open scene exports with an empty cache, so that all arrays are there."""
-    from komorebi import cache, driver
-
-    cache.clear()
-    original, kept = driver.export_scene, []
-
-    def export_scene(*args, **kwargs):
-        data = original(*args, **kwargs)
-        kept.append((data, list(data.meshes)))  # a render drops each as soon as the core has it
-        return data
-
-    driver.export_scene = export_scene
-    try:
-        bpy.ops.render.render()
-    finally:
-        driver.export_scene = original
-    ((data, meshes),) = kept
-    data.meshes[:] = meshes
-    return data
-
-
 def fresh(name, frame=None):
     opened(name, frame)
-    return exported_whole()
+    return support.exported_whole()
 
 
 def test_instancers():
@@ -158,7 +136,7 @@ def test_adaptive_subdivision_is_named():
     holder = modifier if hasattr(modifier, "use_adaptive_subdivision") else cube.cycles
     holder.use_adaptive_subdivision = True
     with support.warnings() as after:
-        data = exported_whole()
+        data = support.exported_whole()
     assert not before
     assert after == [
         'object "Cube": adaptive subdivision is not rendered yet, it has the 3 levels of its modifier'

@@ -21,12 +21,15 @@ SETTINGS = (
     "CameraDOFSettings", "World", "WorldLighting", "WorldMistSettings", "Material",
     "ParticleSettings", "KomorebiSceneSettings", "KomorebiViewLayerSettings",
     "CyclesObjectSettings", "CyclesCameraSettings", "CyclesCurveRenderSettings",
-    "CyclesVisibilitySettings", "CyclesRenderLayerSettings",
+    "CyclesRenderSettings", "CyclesVisibilitySettings", "CyclesRenderLayerSettings",
 )  # fmt: skip
 ELSEWHERE = {
     **{f"border_{end}_{axis}": "drawn into the view" for end in ("min", "max") for axis in "xy"},
     "focus_subtarget": "drawn where the focus object is an armature",
+    "feature_set": "read to say that adaptive subdivision is ignored",
+    **dict.fromkeys(("fps", "fps_base"), "drawn where the rate is none of Blender's list"),
     "frame_current": "the timeline",
+    "frame_subframe": "the timeline, where its menu shows it",
     "holdout": "the outliner's column and menu",
     "indirect_only": "the outliner's menu",
     "kink": "drawn where strands have children",

@@ -2,33 +2,69 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
+from contextlib import nullcontext
 from typing import Any
 
+from ..errors import RenderCancelled
 from ..scene_data import SceneData
 from ..unchanged import Unchanged
-from .camera import export_camera
+from .camera_motion import CameraMotion
+from .deform import DeformingMeshes
 from .instance import export_instances
-from .unsupported import warn_unsupported
+from .motion import InstanceMotion
+from .shutter import Shutter, export_shutter
 from .wanted import Wanted
 from .world import export_world
 
 
 def export_scene(
-    engine: Any, depsgraph: Any, view: str, sources: Collection[str] = (),
+    engine: Any, depsgraph: Any, views: Sequence[str] = ("",), sources: Collection[str] = (),
     unchanged: Unchanged | None = None,
 ) -> SceneData:  # fmt: skip
-    """Everything that the view layer of `depsgraph` shows at its frame, seen by stereo `view`.
+    """Everything that the view layer of `depsgraph` shows at its frame, seen by each stereo view.
 
     `sources` are the core's passes that are kept, which decide what they need to know; `unchanged`
-    knows what an earlier frame has exported.
+    knows what an earlier frame has exported. With motion blur the depsgraph is evaluated at other
+    times, too, and is at its frame again afterwards.
     """
-    scene = depsgraph.scene
-    warn_unsupported(engine, depsgraph)
     # A view layer without its sky has no world at all, neither seen nor as a light.
-    world = scene.world if depsgraph.view_layer.use_sky else None
-    data = SceneData(
-        camera=export_camera(engine, depsgraph, view), world=export_world(engine, world)
-    )
-    export_instances(engine, depsgraph, data, Wanted.by(sources), unchanged or Unchanged())
+    world = depsgraph.scene.world if depsgraph.view_layer.use_sky else None
+    exported_world = export_world(engine, world)
+    shutter = export_shutter(depsgraph.scene, depsgraph.view_layer, sources)
+    unchanged = unchanged or Unchanged()
+    with nullcontext() if shutter is None else shutter.at_middle(engine):
+        if shutter is not None:
+            unchanged.begin(depsgraph)  # the middle may be at another time
+        cameras = [CameraMotion(engine, depsgraph, view, shutter) for view in views]
+        data = SceneData(
+            cameras={view: camera.data for view, camera in zip(views, cameras, strict=True)},
+            world=exported_world,
+        )
+        deforming = DeformingMeshes(engine, depsgraph, shutter)
+        motion = None if shutter is None else InstanceMotion(shutter, deforming)
+        wanted = Wanted.by(sources)
+        export_instances(engine, depsgraph, data, wanted, unchanged, deforming, motion)
+        if shutter is not None and motion is not None:
+            _follow(engine, depsgraph, shutter, cameras, motion)
+            data.instances = motion.finish(data.instances)
+            deforming.finish(data.meshes)
+            for camera in cameras:
+                camera.finish()
     return data
+
+
+def _follow(
+    engine: Any, depsgraph: Any, shutter: Shutter, cameras: list[CameraMotion],
+    motion: InstanceMotion,
+) -> None:  # fmt: skip
+    """Goes through the other times that anything has to be known at."""
+    times = motion.times.union(*(camera.times for camera in cameras)) - {0.0}
+    for number, time in enumerate(sorted(times)):
+        if engine.test_break():
+            raise RenderCancelled
+        engine.update_stats("", f"Exporting motion: time {number + 1} of {len(times)}")
+        shutter.go_to(engine, time)
+        for camera in cameras:
+            camera.record(time)
+        motion.record(engine, depsgraph, time)

@@ -35,6 +35,12 @@ class Lens:
     clip_start: float
     clip_end: float
 
+    @property
+    def sensor(self) -> float:
+        """The side of the sensor that is fitted to a side of the picture, in mm."""
+        # With the fit on AUTO Blender takes the sensor's width for both sides.
+        return self.sensor_height if self.sensor_fit == "VERTICAL" else self.sensor_width
+
 
 def projection(
     lens: Lens, width: int, height: int, aspect_x: float, aspect_y: float
@@ -48,9 +54,7 @@ def projection(
     if lens.kind == "ORTHO":
         pixel = lens.ortho_scale / side
     else:
-        # With the fit on AUTO Blender takes the sensor's width for both sides.
-        sensor = lens.sensor_height if lens.sensor_fit == "VERTICAL" else lens.sensor_width
-        pixel = sensor * lens.clip_start / lens.focal_length / side
+        pixel = lens.sensor * lens.clip_start / lens.focal_length / side
     center_x, center_y = lens.shift_x * side * pixel, lens.shift_y * side * pixel
     half_x, half_y = 0.5 * width * pixel, 0.5 * height * y_per_x * pixel
     near, far = lens.clip_start, lens.clip_end
@@ -90,29 +94,36 @@ def export_camera(engine: Any, depsgraph: Any, view: str) -> CameraData:
     camera = camera_object(engine, depsgraph)
     lens = read_lens(camera)
     stereo = None
-    world_from_object = np.array(camera.matrix_world, np.float64, order="C")
+    world_from_camera = camera_pose(engine, camera, view)
     if view:
         spherical = engine.use_spherical_stereo(camera)
-        matrix = engine.camera_model_matrix(camera, use_spherical_stereo=spherical)
-        world_from_object = np.array(matrix, np.float64, order="C").reshape(4, 4)
         lens.shift_x = engine.camera_shift_x(camera, use_spherical_stereo=spherical)
         stereo = stereo_numbers(camera, view) if spherical else None
-    view_matrix = camera_from_world(world_from_object)
+    view_matrix = camera_from_world(world_from_camera)
     render = depsgraph.scene.render
     width, height = engine.resolution_x, engine.resolution_y
     aspect = (render.pixel_aspect_x, render.pixel_aspect_y)
     data = CameraData(
         name=name_of(camera), kind=KINDS[lens.kind], matrix=view_matrix, width=width, height=height,
         clip_start=lens.clip_start, clip_end=lens.clip_end,
-        lens=lens_numbers(camera, depsgraph, world_from_object), stereo=stereo,
+        lens=lens_numbers(camera, depsgraph, world_from_camera), stereo=stereo,
     )  # fmt: skip
     if lens.kind == "PANO":
-        data.matrix = world_from_object
+        data.matrix = world_from_camera
         shift = (lens.shift_x, lens.shift_y)
         data.panorama = panorama_numbers(camera, width, height, aspect, shift)
     else:
         data.matrix = projection(lens, width, height, *aspect) @ view_matrix
     return data
+
+
+def camera_pose(engine: Any, camera: Any, view: str) -> DoubleArray:
+    """World from camera of an evaluated camera object, or of the active view `view` that it has."""
+    matrix = camera.matrix_world
+    if view:
+        spherical = engine.use_spherical_stereo(camera)
+        matrix = engine.camera_model_matrix(camera, use_spherical_stereo=spherical)
+    return np.array(matrix, np.float64, order="C").reshape(4, 4)
 
 
 def camera_object(engine: Any, depsgraph: Any) -> Any:

@@ -12,7 +12,9 @@ from .. import compat, reporting
 from ..errors import RenderCancelled
 from ..scene_data import InstanceData, ObjectData, SceneData
 from ..unchanged import Unchanged
+from .deform import DeformingMeshes
 from .materials import MaterialExporter
+from .motion import HAIR, SURFACE, InstanceMotion
 from .names import name_of
 from .shapes import NONE, TYPES, ShapeExporter
 from .unsupported import warn_object
@@ -35,10 +37,12 @@ class _Group:
 
 
 def export_instances(
-    engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted, unchanged: Unchanged
-) -> None:
-    """Fills shapes, instances, objects, materials and what was ignored into `data`."""
-    exporter = _Exporter(engine, depsgraph, data, wanted, unchanged)
+    engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted, unchanged: Unchanged,
+    deforming: DeformingMeshes, motion: InstanceMotion | None = None,
+) -> None:  # fmt: skip
+    """Fills shapes, instances, objects, materials and what was ignored into `data`; `motion` learns
+    which instances there are."""
+    exporter = _Exporter(engine, depsgraph, data, wanted, unchanged, deforming, motion)
     for count, instance in enumerate(depsgraph.object_instances):
         if count % CANCEL_INTERVAL == 0 and engine.test_break():
             raise RenderCancelled
@@ -53,13 +57,15 @@ class _Exporter:
     """One walk over the instances of a depsgraph."""
 
     def __init__(
-        self, engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted, unchanged: Unchanged
-    ) -> None:
+        self, engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted, unchanged: Unchanged,
+        deforming: DeformingMeshes, motion: InstanceMotion | None,
+    ) -> None:  # fmt: skip
         self._engine = engine
         self._scene = depsgraph.scene
         self._objects = data.objects
         self._object2index: dict[int, int] = {}
-        self._shapes = ShapeExporter(engine, depsgraph, data.meshes, wanted, unchanged)
+        self._shapes = ShapeExporter(engine, depsgraph, data.meshes, wanted, unchanged, deforming)
+        self._motion = motion
         self._visibility = Visibility(depsgraph)
         self._materials = (
             MaterialExporter(depsgraph.view_layer, data.materials) if wanted.materials else None
@@ -74,16 +80,18 @@ class _Exporter:
             self._note_ignored(obj, instance.show_self)
             return
         if instance.show_self:
-            self._place(self._shapes.surface_of(obj), instance, obj)
+            self._place(self._shapes.surface_of(obj), instance, obj, SURFACE)
         if instance.show_particles:
-            self._place(self._shapes.hair_of(obj), instance, obj)
+            self._place(self._shapes.hair_of(obj), instance, obj, HAIR)
 
-    def _place(self, shape: int, instance: Any, obj: Any) -> None:
+    def _place(self, shape: int, instance: Any, obj: Any, what: int) -> None:
         if shape == NONE:
             return
         group = self.groups.get(shape)
         if group is None:
             group = self.groups[shape] = _Group()
+        if self._motion is not None:
+            self._motion.place(shape, len(group.objects), instance, obj, what)
         original = obj.original
         # foreach_get('matrix_world') on all is faster, and loses 220 bytes for each instance of
         # particles and geometry nodes (3.4, 4.5); converting whole matrices is 8 times slower.

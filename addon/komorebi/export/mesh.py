@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import compat
 from ..mesh_cache import digest
@@ -71,6 +72,27 @@ class MeshReader:
             corner_uvs=uvs,
         )
 
+    def velocity(self) -> FloatArray | None:
+        """How vertices move [vertices, 3], metres a second; None without that attribute."""
+        return compat.point_attribute(self._mesh, "velocity", "FLOAT_VECTOR", 3)
+
+    def at_other_time(self, mesh: Any) -> tuple[FloatArray, FloatArray | None] | None:
+        """Positions of the same mesh as it is evaluated now, and whichever normals `data` has; None
+        if its faces or the kind of its normals are others."""
+        other = MeshReader(mesh, self._name)
+        if not _equal(self._verts, other._verts) or not _equal(self._offsets, other._offsets):
+            return None
+        if not _equal(self._smooth, other._smooth):
+            return None
+        for mine, normals in zip(self._read_normals(), other._read_normals(), strict=True):
+            if (mine is None) != (normals is None):
+                return None
+            if normals is not None:
+                by_corner = normals is other._read_normals()[0]
+                order = self._order if by_corner else None
+                return other._positions, normals if order is None else normals[order]
+        return other._positions, None
+
     def _read_normals(self) -> tuple[FloatArray | None, FloatArray | None]:
         """By corner in Blender's order, or by vertex; neither where all faces are flat."""
         if self._normals is None:
@@ -81,6 +103,10 @@ class MeshReader:
             else:
                 self._normals = (None, compat.vertex_normals(self._mesh))
         return self._normals
+
+
+def _equal(a: NDArray[Any], b: NDArray[Any]) -> bool:
+    return a.shape == b.shape and bool((a == b).all())
 
 
 def _loop_triangles(mesh: Any) -> tuple[IntArray, IntArray]:

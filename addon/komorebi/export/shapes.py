@@ -9,6 +9,7 @@ from ..errors import RenderCancelled
 from ..scene_data import AnyMesh, CurveData, PointData
 from ..unchanged import Unchanged
 from .curves import export_curves
+from .deform import DeformingMeshes
 from .hair import export_hair, hair_systems
 from .mesh import MeshReader
 from .names import name_of
@@ -24,11 +25,12 @@ class ShapeExporter:
 
     def __init__(
         self, engine: Any, depsgraph: Any, meshes: list[AnyMesh], wanted: Wanted,
-        unchanged: Unchanged,
+        unchanged: Unchanged, deforming: DeformingMeshes,
     ) -> None:  # fmt: skip
         self._engine = engine
         self._core = core.load()
         self._unchanged = unchanged
+        self._deforming = deforming
         self._scene = depsgraph.scene
         self._meshes = meshes
         self._wanted = wanted
@@ -54,6 +56,7 @@ class ShapeExporter:
         key = obj.original.as_pointer()
         index = self._by_emitter.get(key)
         if index is None:
+            self._deforming.watch_hair(obj)
             hair = export_hair(obj, name_of(obj), self._scene)
             index = self._by_emitter[key] = self._add(self._with_key(hair))
         return index
@@ -64,6 +67,8 @@ class ShapeExporter:
     def _export(self, obj: Any) -> AnyMesh | None:
         if self._engine.test_break():
             raise RenderCancelled
+        if self._deforming.may_deform(obj):  # known only when all of its times are
+            return self._read(obj)
         address = (obj.data.as_pointer(), obj.original.as_pointer(), self._wanted.uvs)
         key = self._unchanged.key(address)
         known = None if key is None else mesh_cache.find(name_of(obj), key)
@@ -76,21 +81,28 @@ class ShapeExporter:
 
     def _read(self, obj: Any) -> AnyMesh | None:
         if obj.type == "CURVES":
-            return self._with_key(export_curves(obj.data, name_of(obj), self._scene))
+            return self._watched(obj, export_curves(obj.data, name_of(obj), self._scene))
         if obj.type == "POINTCLOUD":
-            return self._with_key(export_points(obj.data, name_of(obj)))
+            return self._watched(obj, export_points(obj.data, name_of(obj)))
         with compat.mesh_of(obj) as mesh:
-            return self._read_mesh(mesh, name_of(obj)) if len(mesh.polygons) else None
+            return self._read_mesh(obj, mesh) if len(mesh.polygons) else None
 
-    def _read_mesh(self, mesh: Any, name: str) -> AnyMesh:
-        reader = MeshReader(mesh, name, self._wanted.uvs)
+    def _read_mesh(self, obj: Any, mesh: Any) -> AnyMesh:
+        reader = MeshReader(mesh, name_of(obj), self._wanted.uvs)
+        if self._deforming.may_deform(obj):
+            return self._deforming.follow(len(self._meshes), obj, reader)
         key = reader.key(self._core)
-        known = mesh_cache.find(name, key)
+        known = mesh_cache.find(name_of(obj), key)
         if known is not None:
             return known
         data = reader.data()
         data.key = key
         return data
+
+    def _watched(self, obj: Any, data: CurveData | PointData | None) -> AnyMesh | None:
+        if data is not None:
+            self._deforming.watch(len(self._meshes), obj, data.positions)
+        return self._with_key(data)
 
     def _with_key(self, data: CurveData | PointData | None) -> AnyMesh | None:
         if data is None:

@@ -8,13 +8,6 @@ from .. import compat, reporting
 from .names import name_of
 
 
-def warn_unsupported(engine: Any, depsgraph: Any) -> None:
-    """Warnings for the scene's own settings."""
-    scene = depsgraph.scene
-    if scene.render.use_motion_blur:
-        reporting.warn(engine, "motion blur is not rendered yet: the frame is taken as still")
-
-
 def warn_object(engine: Any, scene: Any, original: Any) -> None:
     """Warnings for an object that renders."""
     if compat.has_adaptive_subdivision(scene, original):

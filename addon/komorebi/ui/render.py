@@ -101,6 +101,12 @@ class KOMOREBI_RENDER_PT_motion_blur(KomorebiPanel, bpy.types.Panel):
         column.active = render.use_motion_blur
         draw_moved(column, "motion_blur_position", render, cycles(scene), text="Position")
         column.prop(render, "motion_blur_shutter")
+        settings = cycles(scene)
+        if settings is not None:
+            column.prop(settings, "rolling_shutter_type")
+            row = column.row()
+            row.active = settings.rolling_shutter_type != "NONE"
+            row.prop(settings, "rolling_shutter_duration", text="Duration")
 
 
 class KOMOREBI_RENDER_PT_motion_blur_curve(KomorebiPanel, bpy.types.Panel):

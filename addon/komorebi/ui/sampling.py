@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 
 from ..denoise import library
-from .base import ENGINE_ID, KomorebiPanel
+from .base import ENGINE_ID, KomorebiPanel, cycles
 
 
 class KOMOREBI_RENDER_PT_sampling(KomorebiPanel, bpy.types.Panel):
@@ -80,6 +80,9 @@ class KOMOREBI_RENDER_PT_sampling_advanced(KomorebiPanel, bpy.types.Panel):
         sub.active = settings.method == "WORLD_LIGHT"
         sub.prop(settings, "environment_sampling")
         column.prop(settings, "use_progressive")
+        of_cycles = cycles(context.scene)
+        if of_cycles is not None and any(layer.samples for layer in context.scene.view_layers):
+            column.prop(of_cycles, "use_layer_samples", text="Layer Samples")
 
 
 class KOMOREBI_RENDER_PT_ambient_occlusion(KomorebiPanel, bpy.types.Panel):

@@ -56,7 +56,6 @@ def set_cycles(scene: Any, samples: int) -> None:
         use_layer_samples="IGNORE",
         time_limit=0.0,
         use_preview_denoising=False,
-        rolling_shutter_type="NONE",
         texture_limit_render="OFF",
     )
 

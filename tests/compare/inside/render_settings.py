@@ -31,7 +31,6 @@ def set_output(scene: Any) -> None:
         use_sequencer=False,
         use_freestyle=False,
         use_multiview=False,
-        use_motion_blur=False,
         use_single_layer=False,
         use_stamp=False,
         use_file_extension=True,

@@ -1,0 +1,149 @@
+"""Meshes that deform while the shutter is open: their vertices at the other times."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from .. import compat, core, mesh_cache, reporting
+from ..scene_data import AnyMesh, FloatArray, MeshData, MeshKey
+from .mesh import MeshReader
+from .names import name_of
+from .shutter import Shutter, times
+
+# What the core does not blur by how it deforms, though it follows the object's own motion.
+UNBLURRED = {"CURVES": "hair curves", "POINTCLOUD": "points"}
+FIRST = -1.0  # the time at which they are looked at once more
+
+# The attribute that fluids, caches and geometry nodes leave: metres a second, by vertex.
+VELOCITY = "velocity"
+
+
+@dataclass(slots=True)
+class _Mesh:
+    """A mesh that may deform, as it is at rest and at the other times."""
+
+    reader: MeshReader
+    data: MeshData
+    key: MeshKey  # of what it is at rest
+    times: list[float]
+    seen: dict[float, tuple[FloatArray, FloatArray | None]] = field(default_factory=dict)
+
+
+class DeformingMeshes:
+    """Follows those shapes of a view layer of which Blender or a velocity says that they move."""
+
+    def __init__(self, engine: Any, depsgraph: Any, shutter: Shutter | None) -> None:
+        self._engine = engine
+        self._depsgraph = depsgraph
+        self._scene = depsgraph.scene
+        self._shutter = shutter
+        self._meshes: dict[int, _Mesh] = {}  # by shape
+        self._by_object: dict[int, _Mesh] = {}  # by the original's address
+        self._unblurred: dict[int, FloatArray] = {}  # positions at rest, by shape
+        self._hair: list[Any] = []  # emitters
+
+    @property
+    def times(self) -> set[float]:
+        """The relative times at which `record` has something to see, but the middle."""
+        found = {time for mesh in self._meshes.values() for time in mesh.times}
+        return found | ({FIRST} if self._unblurred else set())
+
+    def may_deform(self, obj: Any) -> bool:
+        """Whether the mesh of an evaluated object may change its shape, by Cycles' rule."""
+        if obj.type != "MESH" or self._steps(obj) == 0:
+            return False
+        if obj.data.attributes.get(VELOCITY) is not None:
+            return True
+        # Of what an object shows in place of its own data, nothing tells whether it deforms.
+        own = obj.original.evaluated_get(self._depsgraph).data
+        return own == obj.data and bool(obj.is_deform_modified(self._scene, "RENDER"))
+
+    def follow(self, shape: int, obj: Any, reader: MeshReader) -> MeshData:
+        """The mesh of `obj` at rest, to be the shape of that index; `finish` gives it its key."""
+        mesh = _Mesh(reader, reader.data(), reader.key(core.load()), [])
+        self._meshes[shape] = mesh
+        self._by_object[obj.original.as_pointer()] = mesh
+        velocity = reader.velocity()
+        if velocity is None:
+            mesh.times = [time for time in times(self._steps(obj)) if time != 0.0]
+        elif self._shutter is not None:
+            render = self._scene.render
+            seconds = self._shutter.duration * render.fps_base / render.fps
+            reach = np.float32(0.5 * seconds) * velocity
+            rest = mesh.data.positions
+            mesh.data.motion_positions = np.stack([rest - reach, rest + reach])
+        return mesh.data
+
+    def watch(self, shape: int, obj: Any, positions: FloatArray) -> None:
+        """Hair curves or points, of which a warning will tell if they deform."""
+        if self._steps(obj):
+            self._unblurred[shape] = positions
+
+    def watch_hair(self, obj: Any) -> None:
+        """Hair on an emitter, likewise."""
+        if self._steps(obj):
+            self._hair.append(obj.original)
+
+    def record(self, shape: int, obj: Any, time: float) -> None:
+        """Takes the vertices of a shape as they are now, at a relative time; once for all of its
+        instances."""
+        mesh = self._meshes.get(shape)
+        if mesh is not None and time in mesh.times and time not in mesh.seen:
+            with compat.mesh_of(obj) as evaluated:
+                seen = mesh.reader.at_other_time(evaluated)
+            if seen is not None:
+                mesh.seen[time] = seen
+            else:
+                mesh.times.clear()
+                self._warn(mesh.data.name, "its faces change while the shutter is open")
+        elif shape in self._unblurred and time == FIRST:
+            rest = self._unblurred.pop(shape)
+            now = compat.point_attribute(obj.data, "position", "FLOAT_VECTOR", 3)
+            if now is None or now.shape != rest.shape or (now != rest).any():
+                self._warn(name_of(obj), f"its {UNBLURRED[obj.type]} change their shape")
+
+    def finish(self, meshes: list[AnyMesh]) -> None:
+        """Gives what was followed its motion and its key, or the mesh that is known by that."""
+        for shape, mesh in self._meshes.items():
+            self._set_motion(mesh)
+            key, moved = mesh.key, mesh.data.motion_positions
+            if moved is not None:
+                turned = mesh.data.motion_normals
+                key = MeshKey(
+                    key.geometry + mesh_cache.digest(core.load(), (moved,)),
+                    key.shading + mesh_cache.digest(core.load(), (turned,)),
+                )
+            mesh.data.key = key
+            meshes[shape] = mesh_cache.find(mesh.data.name, key) or mesh.data
+        for emitter in self._hair:
+            own = self._by_object.get(emitter.as_pointer())
+            dynamic = any(system.use_hair_dynamics for system in emitter.particle_systems)
+            if dynamic or (own is not None and own.data.motion_positions is not None):
+                self._warn(name_of(emitter), "its hair changes its shape")
+
+    def _set_motion(self, mesh: _Mesh) -> None:
+        if not mesh.times or len(mesh.seen) < len(mesh.times):  # not there at all of its times
+            return
+        data = mesh.data
+        seen = [mesh.seen[time] for time in mesh.times]
+        positions = np.stack([positions for positions, _ in seen])
+        if (positions == data.positions).all():
+            return
+        data.motion_positions = positions
+        normals = [normals for _, normals in seen if normals is not None]
+        if len(normals) == len(seen):
+            data.motion_normals = np.stack(normals)
+
+    def _steps(self, obj: Any) -> int:
+        shutter = self._shutter
+        if shutter is None or (shutter.is_open and not compat.uses_deform_motion(obj.original)):
+            return 0
+        return shutter.steps(obj.original)
+
+    def _warn(self, name: str, why: str) -> None:
+        reporting.warn(
+            self._engine, f'object "{name}": {why}, which is not blurred; its own motion is'
+        )
