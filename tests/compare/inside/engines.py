@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import bpy
@@ -23,6 +24,21 @@ def skip_first_sample(cycles: Any, samples: int) -> None:
     require(cycles, sample_offset=first)
 
 
+def owen_scramble(cycles: Any) -> None:
+    """Draw samples by Burley's Sobol' points.
+
+    All other patterns are read from tables that no seed changes, so that seeds share an error: 0.3 %
+    of a corner's light at 16 samples (4.5), of which their scatter tells nothing.
+    """
+    preferences = bpy.context.preferences  # without these newer releases do not list it
+    preferences.view.show_developer_ui = preferences.experimental.use_cycles_debug = True
+    for name in ("SOBOL_BURLEY", "SOBOL"):
+        with suppress(TypeError):
+            settle(cycles, "sampling_pattern", name)
+            return
+    raise RuntimeError("this Cycles has no sampling pattern that a seed changes")
+
+
 def set_cycles(scene: Any, samples: int) -> None:
     """Cycles on the CPU: zero bounces, box filter, and nothing that biases or stops early."""
     if not hasattr(scene, "cycles"):
@@ -38,6 +54,7 @@ def set_cycles(scene: Any, samples: int) -> None:
     require(
         scene.cycles, sample_clamp_direct=0.0, sample_clamp_indirect=0.0, use_animated_seed=False
     )
+    owen_scramble(scene.cycles)
     skip_first_sample(scene.cycles, samples)
     settle_all(
         scene.cycles,
@@ -87,8 +104,12 @@ def set_komorebi(scene: Any, samples: int, mode: str) -> None:
 
 
 def set_seed(scene: Any, engine: str, seed: int) -> None:
-    """Another, independent picture of the same scene."""
-    require(scene.cycles if engine == "CYCLES" else scene.komorebi, seed=seed)
+    """Another, independent picture of the same scene.
+
+    Cycles scrambles points by a hash in which neighbouring seeds are alike, so they are spread.
+    """
+    spread = seed * 0x9E3779B1 & 0x7FFFFFFF  # 2³² over the golden ratio
+    require(scene.cycles if engine == "CYCLES" else scene.komorebi, seed=spread)
 
 
 def clay(mode: str, flat: bool) -> Any:
