@@ -227,6 +227,11 @@ def has_adaptive_subdivision(scene: Any, obj: Any) -> bool:
     return bool(getattr(cycles_or(obj, None), "use_adaptive_subdivision", False))
 
 
+def has_overscan(scene: Any) -> bool:
+    """Whether a file was made for EEVEE to render more than the frame."""
+    return bool(getattr(scene.eevee, "use_overscan", False))
+
+
 def world_nodes(world: Any) -> Any | None:
     """The node tree that a world uses, or None (from 5.0 every world has one)."""
     if VERSION < (5, 0, 0) and not world.use_nodes:

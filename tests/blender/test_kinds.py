@@ -142,3 +142,15 @@ def test_adaptive_subdivision_is_named():
         'object "Cube": adaptive subdivision is not rendered yet, it has the 3 levels of its modifier'
     ]
     assert data.meshes[0].primitive_count == 2 * 6 * 4**3
+
+
+def test_overscan_is_named():
+    scene = bpy.context.scene
+    if not hasattr(scene.eevee, "use_overscan"):
+        raise support.Skip("this release's EEVEE has no overscan")
+    with support.warnings() as said:
+        support.exported()
+        assert not said
+        scene.eevee.use_overscan = True
+        support.exported()
+    assert [s for s in said if "overscan" in s] == said and len(said) == 1, said

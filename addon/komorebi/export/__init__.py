@@ -14,6 +14,7 @@ from .deform import DeformingMeshes
 from .instance import export_instances
 from .motion import InstanceMotion
 from .shutter import Shutter, export_shutter
+from .unsupported import warn_scene
 from .wanted import Wanted
 from .world import export_world
 
@@ -28,6 +29,7 @@ def export_scene(
     knows what an earlier frame has exported. With motion blur the depsgraph is evaluated at other
     times, too, and is at its frame again afterwards.
     """
+    warn_scene(engine, depsgraph.scene)
     # A view layer without its sky has no world at all, neither seen nor as a light.
     world = depsgraph.scene.world if depsgraph.view_layer.use_sky else None
     exported_world = export_world(engine, world)

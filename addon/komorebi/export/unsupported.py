@@ -8,6 +8,12 @@ from .. import compat, reporting
 from .names import name_of
 
 
+def warn_scene(engine: Any, scene: Any) -> None:
+    """Warnings for a scene's own settings."""
+    if compat.has_overscan(scene):
+        reporting.warn(engine, "EEVEE's overscan is left out: the frame ends at its rim")
+
+
 def warn_object(engine: Any, scene: Any, original: Any) -> None:
     """Warnings for an object that renders."""
     if compat.has_adaptive_subdivision(scene, original):
