@@ -65,7 +65,7 @@ SWITCHES = (
     Switch(_L, "use_pass_mist", "DATA", "Mist", ("Mist",), "Z", _VALUE, "Mist"),
     Switch(_L, "use_pass_position", "DATA", "Position", ("Position",), "XYZ", _VECTOR, "Position"),
     Switch(_L, "use_pass_normal", "DATA", "Normal", ("Normal",), "XYZ", _VECTOR, "Normal"),
-    Switch(_L, "use_pass_vector", "DATA", "Vector", ("Vector",), "XYZW", _VECTOR),
+    Switch(_L, "use_pass_vector", "DATA", "Vector", ("Vector",), "XYZW", _VECTOR, "Vector"),
     Switch(_L, "use_pass_uv", "DATA", "UV", ("UV",), "UVA", _VECTOR, "UV"),
     Switch(_L, "use_pass_object_index", "DATA", "Object Index", ("IndexOB", "Object Index"), "X", _VALUE, "Object Index"),
     Switch(_L, "use_pass_material_index", "DATA", "Material Index", ("IndexMA", "Material Index"), "X", _VALUE, "Material Index"),

@@ -53,6 +53,11 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.light_samples = resolved_light_samples(settings);
   context.passes =
       make_pass_layout(settings.passes, scene.has_catchers(), settings.film_transparent);
+  context.has_vector = context.passes.keeps(Quantity::kVector) && scene.is_still();
+  if (context.has_vector) {
+    context.film_steps = scene.film_steps();
+    context.steps = scene.steps();
+  }
   context.tables = &scene.tables();
   const bool lifts = scene.tables().lifts_rays();
   // Cycles lifts the rays to lights and those of ambient occlusion, but not what it samples by the

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "core/motion_vector.h"
+
 namespace komorebi {
 namespace {
 
@@ -31,6 +33,8 @@ double bound_of(Quantity q, std::uint32_t channel, double radiance) {
       return channel < 3 ? radiance : 1.0;
     case Quantity::kUv:
       return 2047.0;
+    case Quantity::kVector:
+      return kMaxMotionVector / 32.0;
     case Quantity::kDenoisingDepth:
       return 2097151.0;  // 67,000 km, to a thousandth of a millimetre
     default:

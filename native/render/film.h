@@ -102,6 +102,7 @@ class Film {
   void read_run(const PassDesc& desc, std::uint32_t part, std::size_t i, std::uint32_t x,
                 std::uint32_t y, std::size_t count, float* out) const;
   void read_variance(std::size_t i, std::size_t count, double samples, float* out) const;
+  void read_mean_of_hits(const PassDesc& desc, std::size_t i, std::size_t count, float* out) const;
   /// The picture of a scene with shadow catchers.
   void read_composed(std::size_t i, std::size_t count, double samples, float* out) const;
   /// A quantity's mean in one pixel.

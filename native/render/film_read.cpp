@@ -90,6 +90,22 @@ void Film::read_variance(std::size_t i, std::size_t count, double samples, float
   }
 }
 
+void Film::read_mean_of_hits(const PassDesc& desc, std::size_t i, std::size_t count,
+                             float* out) const {
+  const auto place = [&](Quantity q) {
+    return static_cast<std::size_t>(layout_.place[static_cast<std::size_t>(q)]);
+  };
+  const std::size_t at = place(desc.quantity), weight_at = place(Quantity::kVectorWeight);
+  for (std::size_t end = i + count; i < end; ++i) {
+    const std::int64_t* sums = &means_[layout_.means * i];
+    const double hits = static_cast<double>(sums[weight_at]) / mean_scale_[weight_at];
+    for (std::size_t c = at; c < at + desc.channels; ++c) {
+      *out++ = static_cast<float>(
+          hits > 0.0 ? static_cast<double>(sums[c]) / (mean_scale_[c] * hits) : 0.0);
+    }
+  }
+}
+
 void Film::read_run(const PassDesc& desc, std::uint32_t part, std::size_t i, std::uint32_t x,
                     std::uint32_t y, std::size_t count, float* out) const {
   const std::size_t this_cell = cell(x, y);
@@ -131,6 +147,9 @@ void Film::read_run(const PassDesc& desc, std::uint32_t part, std::size_t i, std
         for (int c = 0; c < 3; ++c)
           *out++ = static_cast<float>(length > 0.0 ? sum[c] / length : 0.0);
       }
+      return;
+    case PassRule::kMeanOfHits:
+      read_mean_of_hits(desc, i, count, out);
       return;
     case PassRule::kMean:
       break;

@@ -111,6 +111,15 @@ void Mesh::take_uvs(const MeshInput& in, ThreadPool& pool, const Cancel& cancel)
   });
 }
 
+void Mesh::take_steps(const MeshInput& in, ThreadPool& pool, const Cancel& cancel) {
+  step_xyz_.resize(in.step_positions.size());
+  const Vec3 shift(origin());  // exact: see MeshGeometry
+  for_each_index(step_xyz_.size() / 3, pool, cancel, [&](std::size_t i) {
+    const Vec3 local = row(in.step_positions, i) - shift;
+    for (std::size_t c = 0; c < 3; ++c) step_xyz_[3 * i + c] = local[static_cast<int>(c)];
+  });
+}
+
 std::shared_ptr<const Mesh> Mesh::build(const MeshInput& in, Builder builder, ThreadPool& pool,
                                         const Cancel& cancel, const Mesh* same_geometry) {
   check_mesh(in, pool);
@@ -131,6 +140,7 @@ std::shared_ptr<const Mesh> Mesh::build(const MeshInput& in, Builder builder, Th
   mesh->take_normals(in, pool, cancel);
   mesh->take_materials(in, pool, cancel);
   mesh->take_uvs(in, pool, cancel);
+  mesh->take_steps(in, pool, cancel);
   return mesh;
 }
 
@@ -178,6 +188,7 @@ void Mesh::take_shading(const Mesh& other) {
   tri2smooth_ = other.tri2smooth_;
   tri2material_ = other.tri2material_;
   tri2uv_ = other.tri2uv_;
+  step_xyz_ = other.step_xyz_;
   if (other.tri2normal_ == other.geometry_->tri2vtx.data()) {
     tri2normal_ = geometry_->tri2vtx.data();
   } else if (!every_corner_.empty()) {
@@ -243,7 +254,7 @@ MeshView Mesh::view() const {
 std::size_t Mesh::byte_count() const {
   const std::size_t geometry = round_ ? round_->byte_count() : geometry_->byte_count();
   return sizeof(Mesh) + geometry + bytes(normals_) + bytes(every_corner_) + bytes(tri2smooth_) +
-         bytes(tri2material_) + bytes(tri2uv_);
+         bytes(tri2material_) + bytes(tri2uv_) + bytes(step_xyz_);
 }
 
 }  // namespace komorebi

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/motion_vector.h"
 #include "core/surface_point.h"
 
 namespace komorebi {
@@ -91,6 +92,12 @@ void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, c
   layout.put(row, Quantity::kNormal, normal);
   layout.put(row, Quantity::kDiffuseColor, context.albedo);
   layout.put(row, Quantity::kDenoisingDepth, hit.t);
+  if (context.has_vector) {
+    const glm::vec4 vector = motion_vector(context.scene, context.steps, context.film_steps, hit);
+    float* to = row + layout.place[static_cast<std::size_t>(Quantity::kVector)];
+    for (int c = 0; c < 4; ++c) to[c] = vector[c];
+    layout.put(row, Quantity::kVectorWeight, 1.0f);
+  }
   if (layout.keeps(Quantity::kUv)) layout.put(row, Quantity::kUv, uv_at(mesh, hit));
   if (layout.keeps(Quantity::kMist)) {
     const Vec3d at = Vec3d(ray.origin) + double{hit.t} * Vec3d(ray.direction);

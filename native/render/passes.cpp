@@ -17,6 +17,7 @@ constexpr PassDesc kPasses[] = {
     {"Instance Index", 1, kFirstSample, Quantity::kInstanceIndex},
     {"Normal", 3, kMean, Quantity::kNormal},
     {"UV", 3, kMean, Quantity::kUv},
+    {"Vector", 4, kMeanOfHits, Quantity::kVector},
     {"Mist", 1, kMean, Quantity::kMist},
     {"Environment", 3, kMean, Quantity::kEnvironment},
     {"Diffuse Color", 3, kMean, Quantity::kDiffuseColor},
@@ -76,7 +77,7 @@ std::uint32_t channels_of(Quantity q) {
   for (const PassDesc& p : kPasses) {
     if (p.quantity == q) return p.channels;
   }
-  return 1;  // an id
+  return 1;  // an id or a weight
 }
 
 PassLayout::PassLayout() {
@@ -96,6 +97,7 @@ PassLayout make_pass_layout(const std::vector<std::string>& passes, bool catcher
   for (const std::string& name : passes) {
     const PassDesc& pass = find_pass(name);
     if (pass.quantity != Quantity::kCount) want(pass.quantity);
+    if (pass.rule == PassRule::kMeanOfHits) want(Quantity::kVectorWeight);
     layout.keeps_variance |= pass.rule == PassRule::kVariance;
   }
   if (catchers) {

@@ -12,6 +12,7 @@ namespace komorebi {
 /// How the samples of a pixel become its value in a pass.
 enum class PassRule : std::uint32_t {
   kMean,         ///< sum of the samples over their number
+  kMeanOfHits,   ///< over the number of those that have hit something
   kFirstSample,  ///< what the sample with the lowest index saw: places and indices, as Cycles
   kDirection,    ///< the sum of the samples as a unit vector; null where it is null
   kCount,        ///< the number of samples over the largest, `samples` (as Cycles)
@@ -39,6 +40,8 @@ enum class Quantity : std::uint8_t {
   kAmbientOcclusion,
   kSkyVisibility,
   kBentNormal,
+  kVector,
+  kVectorWeight,  ///< 1 for a sample that has a vector
   kCatcherLight,  ///< of shadow catchers, were there nothing but them
   kMatte,         ///< what is no shadow catcher: premultiplied radiance and alpha
   // Cryptomatte ids:
