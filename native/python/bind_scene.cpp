@@ -162,7 +162,7 @@ void set_world_environment(Scene& scene, std::shared_ptr<const Environment> envi
 void set_tables(Scene& scene, const py::object& object_pass_index, const py::object& object_mattes,
                 const py::object& object_terminators, const py::object& material_pass_index,
                 const py::object& material_mattes, const py::object& slot_begin,
-                const py::object& slots) {
+                const py::object& slots, const py::object& material_values) {
   const auto object_index = view<float>(object_pass_index, "object_pass_index", {-1});
   const auto objects = static_cast<py::ssize_t>(object_index.size());
   const auto object_ids = view<float>(object_mattes, "object_mattes", {objects, 2});
@@ -180,6 +180,11 @@ void set_tables(Scene& scene, const py::object& object_pass_index, const py::obj
   }
   for (std::size_t i = 0; i < material_index.size(); ++i) {
     tables.materials.push_back({material_index[i], std::bit_cast<std::uint32_t>(material_ids[i])});
+  }
+  const auto values = optional_view<float>(material_values, "material_values", {materials, -1});
+  tables.values.assign(values.begin(), values.end());
+  if (materials > 0) {
+    tables.value_count = static_cast<std::uint32_t>(values.size() / material_index.size());
   }
   tables.slot_begin.assign(begin.begin(), begin.end());
   tables.slots.assign(entries.begin(), entries.end());
@@ -294,11 +299,14 @@ void bind_scene(py::module_& module) {
       .def("set_tables", &set_tables, py::kw_only(), py::arg("object_pass_index"),
            py::arg("object_mattes"), py::arg("object_terminators"), py::arg("material_pass_index"),
            py::arg("material_mattes"), py::arg("slot_begin"), py::arg("slots"),
+           py::arg("material_values") = py::none(),
            "What passes tell of objects and materials. Pass indices and Cryptomatte ids: float32 "
            "[N], object_mattes [N, 2] of object and asset. object_terminators: float32 [N, 2], "
            "Blender's shadow_terminator_geometry_offset and the shading one, 0 to 1. List l of "
            "material slots is "
-           "slots[slot_begin[l]:slot_begin[l + 1]], indices of materials; uint32 both.")
+           "slots[slot_begin[l]:slot_begin[l + 1]], indices of materials; uint32 both. "
+           "material_values: float32 [N, K], what holds all over a material; the pass \"Material "
+           "Value f n\" shows n (1 to 4) of them from number f on.")
       .def(
           "set_world_color",
           [](Scene& scene, const std::array<float, 3>& c) {

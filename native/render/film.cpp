@@ -24,13 +24,15 @@ double power_of_two_scale(double bound, int bits) {
 }
 
 /// A thirty-second of what a channel of a quantity may come to.
-double bound_of(Quantity q, std::uint32_t channel, double radiance) {
+double bound_of(Quantity q, std::uint32_t channel, double radiance, double value) {
   switch (q) {
     case Quantity::kEnvironment:
     case Quantity::kCatcherLight:
       return radiance;
     case Quantity::kMatte:
       return channel < 3 ? radiance : 1.0;
+    case Quantity::kMaterialValue:
+      return value;
     case Quantity::kUv:
       return 2047.0;
     case Quantity::kVector:
@@ -44,7 +46,8 @@ double bound_of(Quantity q, std::uint32_t channel, double radiance) {
 
 }  // namespace
 
-Film::Film(const Rect& region, const Settings& settings, float max_radiance, bool catchers)
+Film::Film(const Rect& region, const Settings& settings, float max_radiance, bool catchers,
+           float max_value)
     : region_(region),
       first_sample_(settings.sample_offset),
       samples_(settings.samples),
@@ -72,9 +75,9 @@ Film::Film(const Rect& region, const Settings& settings, float max_radiance, boo
     const auto quantity = static_cast<Quantity>(q);
     const std::int16_t place = layout_.place[q];
     if (place == PassLayout::kNone || place >= layout_.means) continue;
-    for (std::uint32_t c = 0; c < channels_of(quantity); ++c) {
+    for (std::uint32_t c = 0; c < layout_.channels_of(quantity); ++c) {
       mean_scale_[static_cast<std::size_t>(place) + c] =
-          power_of_two_scale(bound_of(quantity, c, radiance), bits);
+          power_of_two_scale(bound_of(quantity, c, radiance, double{max_value}), bits);
     }
   }
   for (std::size_t k = 0; k < layout_.ids; ++k) mattes_[k].resize(counts_.size());

@@ -48,7 +48,9 @@ class Film {
   /// counted, which only a defect elsewhere can cause. Throws std::invalid_argument for a pass
   /// that is not known. With `catchers` the picture is composed of what is no shadow catcher over
   /// the shadows on those that are.
-  Film(const Rect& region, const Settings& settings, float max_radiance, bool catchers = false);
+  /// `max_value`: bound of the materials' values (SceneTables).
+  Film(const Rect& region, const Settings& settings, float max_radiance, bool catchers = false,
+       float max_value = 1.0f);
 
   const Rect& region() const { return region_; }
   const PassLayout& layout() const { return layout_; }

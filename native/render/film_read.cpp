@@ -113,7 +113,8 @@ void Film::read_run(const PassDesc& desc, std::uint32_t part, std::size_t i, std
   const std::int16_t place = desc.quantity == Quantity::kCount
                                  ? std::int16_t{0}
                                  : layout_.place[static_cast<std::size_t>(desc.quantity)];
-  const auto at = static_cast<std::size_t>(place);
+  const auto at =
+      static_cast<std::size_t>(place) + (desc.quantity == Quantity::kMaterialValue ? part : 0);
   switch (desc.rule) {
     case PassRule::kCount:
       std::fill_n(out, count, static_cast<float>(seen / samples_));
@@ -191,7 +192,9 @@ void Film::read(const std::string& name, const Rect& rect, float* out) const {
 
 void Film::read(const std::string& name, const Rect& rect, float* out, ThreadPool& pool) const {
   const PassDesc& desc = find_pass(name);
-  const std::uint32_t part = desc.rule == PassRule::kMatte ? matte_part(name) : 0;
+  const std::uint32_t part = desc.rule == PassRule::kMatte               ? matte_part(name)
+                             : desc.quantity == Quantity::kMaterialValue ? first_value(name)
+                                                                         : 0;
   if (rect.x_min < region_.x_min || rect.y_min < region_.y_min || rect.x_max > region_.x_max ||
       rect.y_max > region_.y_max || rect.x_min > rect.x_max || rect.y_min > rect.y_max) {
     throw std::invalid_argument("the rectangle to read lies outside the film");

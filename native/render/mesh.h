@@ -74,6 +74,7 @@ class Mesh {
  private:
   Mesh() = default;
   void take_shading(const Mesh& other);
+  void take_shading(const CurvesInput& input);
   Mesh(std::string name, RoundGeometry round)
       : name_(std::move(name)),
         geometry_(std::make_shared<const MeshGeometry>()),
@@ -93,9 +94,9 @@ class Mesh {
   const std::uint32_t* tri2normal_ = nullptr;  // into geometry_, or every_corner_
   Array<std::uint32_t> every_corner_;          // 0, 1, 2 …
   Array<std::uint8_t> tri2smooth_;
-  Array<std::uint16_t> tri2material_;
-  Array<float> tri2uv_;    // [triangles][3][2]
-  Array<float> step_xyz_;  // [2][vertices][3], relative to the origin
+  Array<std::uint16_t> tri2material_;  // of curves by segment
+  Array<float> tri2uv_;                // [triangles][3][2]; of curves [segments][2]
+  Array<float> step_xyz_;              // [2][vertices][3], relative to the origin
 };
 
 }  // namespace komorebi

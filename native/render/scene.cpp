@@ -149,6 +149,14 @@ void Scene::set_tables(SceneTables tables) {
   if (!covers || !std::is_sorted(begin.begin(), begin.end())) {
     throw std::invalid_argument("the lists of material slots do not cover the slots in order");
   }
+  if (tables.values.size() != tables.materials.size() * tables.value_count) {
+    throw std::invalid_argument("material values must have a row a material");
+  }
+  for (const float value : tables.values) {
+    if (!(value >= -1e30f && value <= 1e30f)) {
+      throw std::invalid_argument("a material value is not finite or beyond 1e30");
+    }
+  }
   for (const std::uint32_t material : tables.slots) {
     if (material >= tables.materials.size()) {
       throw std::invalid_argument("a material slot names material " + std::to_string(material) +

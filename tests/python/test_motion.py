@@ -97,7 +97,9 @@ def test_the_vector_pass_compares_poses_in_time() -> None:
     pixels = 2.0 * 32 / 7 * 0.5  # the cube's face is 7 m away
     expected = [-pixels, 0, -pixels, 0]
     moved = vectors(cube_scene(poses(-0.5, 0, 0.5)[None]), {})
-    deformed = vectors(cube_scene(step_positions=np.stack([positions - step, positions + step])), {})
+    deformed = vectors(
+        cube_scene(step_positions=np.stack([positions - step, positions + step])), {}
+    )
     around = {"motion": {"matrices": poses(0.5, 0, -0.5) @ np.linalg.inv(VIEW)}}
     followed = vectors(cube_scene(), around)
     for result in (moved, deformed, followed):

@@ -62,7 +62,9 @@ class _Exporter:
         self._shapes = ShapeExporter(engine, depsgraph, data.meshes, wanted, unchanged)
         self._visibility = Visibility(depsgraph)
         self._materials = (
-            MaterialExporter(depsgraph.view_layer, data.materials) if wanted.materials else None
+            MaterialExporter(engine, depsgraph.view_layer, data.materials)
+            if wanted.materials
+            else None
         )
         self.groups: dict[int, _Group] = {}
         self.ignored: Counter[str] = Counter()

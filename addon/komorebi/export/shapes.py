@@ -54,7 +54,7 @@ class ShapeExporter:
         key = obj.original.as_pointer()
         index = self._by_emitter.get(key)
         if index is None:
-            hair = export_hair(obj, name_of(obj), self._scene)
+            hair = export_hair(obj, name_of(obj), self._scene, self._wanted.uvs)
             index = self._by_emitter[key] = self._add(self._with_key(hair))
         return index
 
@@ -76,7 +76,8 @@ class ShapeExporter:
 
     def _read(self, obj: Any) -> AnyMesh | None:
         if obj.type == "CURVES":
-            return self._with_key(export_curves(obj.data, name_of(obj), self._scene))
+            curves = export_curves(obj.data, name_of(obj), self._scene, self._wanted.uvs)
+            return self._with_key(curves)
         if obj.type == "POINTCLOUD":
             return self._with_key(export_points(obj.data, name_of(obj)))
         with compat.mesh_of(obj) as mesh:

@@ -93,6 +93,8 @@ std::shared_ptr<Scene> telling_scene() {
   tables.materials = {{5.0f, 301}, {6.0f, 302}};
   tables.slot_begin = {0, 1, 3};
   tables.slots = {0, 1, 0};
+  tables.value_count = 4;
+  tables.values = {0.0f, 0.25f, 2.0f, 1.0f, 9.0f, -300.0f, 0.1f, 1.0f};
   scene->set_tables(std::move(tables));
   scene->set_world_environment(gradient_map(), 0.7, Mat3d(1.0));
   CameraDesc camera = camera_at({5, -4, 3}, {0, 0, 0.8}, 150, 90);
@@ -155,7 +157,7 @@ std::shared_ptr<Scene> moving_scene(Builder builder = Builder::kLinear) {
 
 std::vector<std::string> every_pass() {
   std::vector<std::string> names = {"CryptoObject00", "CryptoMaterial00", "CryptoAsset00",
-                                    "CryptoObject01"};
+                                    "CryptoObject01", "Material Value 1 3"};
   for (const PassDesc& pass : known_passes()) names.emplace_back(pass.name);
   return names;
 }
