@@ -239,6 +239,18 @@ def world_nodes(world: Any) -> Any | None:
     return world.node_tree
 
 
+def material_nodes(material: Any) -> Any | None:
+    """The node tree that a material uses, or None (from 5.0 every material has one)."""
+    if VERSION < (5, 0, 0) and not material.use_nodes:
+        return None
+    return material.node_tree
+
+
+def aov_name(node: Any) -> str:
+    """Which AOV an AOV Output node writes to; once it was the name of the node itself."""
+    return str(node.aov_name if hasattr(node, "aov_name") else node.name)
+
+
 def compositor_nodes(scene: Any) -> Any | None:
     """The compositor's node tree that a scene uses, or None."""
     if hasattr(scene, "compositing_node_group"):  # from 5.0
@@ -271,6 +283,16 @@ def point_attribute(data: Any, name: str, kind: str, columns: int) -> FloatArray
     result = np.empty(len(attribute.data) * columns, np.float32)
     attribute.data.foreach_get("value" if columns == 1 else "vector", result)
     return result.reshape(-1, columns)
+
+
+def curve_uvs(data: Any) -> FloatArray | None:
+    """The first pair of numbers that each curve has [curves, 2], as Cycles takes it for its UVs."""
+    for attribute in data.attributes:
+        if attribute.domain == "CURVE" and attribute.data_type == "FLOAT2":
+            result = np.empty(len(attribute.data) * 2, np.float32)
+            attribute.data.foreach_get("vector", result)
+            return result.reshape(-1, 2)
+    return None
 
 
 def curve_offsets(data: Any) -> IntArray:

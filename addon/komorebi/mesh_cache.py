@@ -39,10 +39,11 @@ def find(name: str, key: MeshKey) -> KnownShape | None:
 
 
 def round_key(core: Any, data: CurveData | PointData) -> MeshKey:
-    """The key of curves or points, which have no shading of their own."""
+    """The key of curves or points; of shading they have no more than what passes tell."""
     if isinstance(data, CurveData):
         kind = f"curves {data.shape} {data.subdivisions}".encode()
-        return MeshKey(kind + digest(core, (data.positions, data.radii, data.curve_offsets)), b"")
+        geometry = kind + digest(core, (data.positions, data.radii, data.curve_offsets))
+        return MeshKey(geometry, digest(core, (data.curve_materials, data.curve_uvs)))
     return MeshKey(b"points" + digest(core, (data.positions, data.radii)), b"")
 
 

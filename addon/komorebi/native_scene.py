@@ -103,6 +103,9 @@ def tables(data: SceneData) -> dict[str, Any]:
         "material_mattes": np.array([name_id(m.name) for m in materials], np.uint32).view(
             np.float32
         ),
+        "material_values": np.array([m.values for m in materials], np.float32).reshape(
+            len(materials), -1 if materials else 0
+        ),
         "slot_begin": np.cumsum([0, *map(len, slots)], dtype=np.uint32),
         "slots": np.array([m for indices in slots for m in indices], np.uint32),
     }
@@ -143,7 +146,8 @@ def _native_mesh(
     if isinstance(mesh, CurveData):
         return core.Mesh.from_curves(
             mesh.name, mesh.positions, mesh.radii, mesh.curve_offsets, shape=mesh.shape,
-            subdivisions=mesh.subdivisions, builder=builder, threads=threads, cancel=cancel,
+            subdivisions=mesh.subdivisions, curve_materials=mesh.curve_materials,
+            curve_uvs=mesh.curve_uvs, builder=builder, threads=threads, cancel=cancel,
         )  # fmt: skip
     if isinstance(mesh, PointData):
         return core.Mesh.from_points(

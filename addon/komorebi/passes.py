@@ -55,6 +55,19 @@ class Switch:
         return view_layer.komorebi
 
 
+@dataclass(frozen=True, slots=True)
+class ValueColumn:
+    """A shader AOV and where its channels stand among each material's values."""
+
+    aov: str
+    first: int
+    channels: int  # 1; or 4 for a colour, and where there is one
+
+    @property
+    def source(self) -> str:
+        return f"Material Value {self.first} {self.channels}"
+
+
 _L, _C, _O = "LAYER", "CYCLES", "OURS"
 _COLOR, _VECTOR, _VALUE = "COLOR", "VECTOR", "VALUE"
 
@@ -65,7 +78,7 @@ SWITCHES = (
     Switch(_L, "use_pass_mist", "DATA", "Mist", ("Mist",), "Z", _VALUE, "Mist"),
     Switch(_L, "use_pass_position", "DATA", "Position", ("Position",), "XYZ", _VECTOR, "Position"),
     Switch(_L, "use_pass_normal", "DATA", "Normal", ("Normal",), "XYZ", _VECTOR, "Normal"),
-    Switch(_L, "use_pass_vector", "DATA", "Vector", ("Vector",), "XYZW", _VECTOR),
+    Switch(_L, "use_pass_vector", "DATA", "Vector", ("Vector",), "XYZW", _VECTOR, "Vector"),
     Switch(_L, "use_pass_uv", "DATA", "UV", ("UV",), "UVA", _VECTOR, "UV"),
     Switch(_L, "use_pass_object_index", "DATA", "Object Index", ("IndexOB", "Object Index"), "X", _VALUE, "Object Index"),
     Switch(_L, "use_pass_material_index", "DATA", "Material Index", ("IndexMA", "Material Index"), "X", _VALUE, "Material Index"),
@@ -127,10 +140,20 @@ def _enabled(scene: Any, view_layer: Any) -> Iterator[Pass]:
             yield Pass(f"{name}{part:02d}", "rgba", _COLOR, f"{name}{part:02d}")
     if scene.komorebi.use_denoising:
         yield NOISY_IMAGE
+    for column in value_columns(view_layer):
+        ids, kind = ("X", _VALUE) if column.channels == 1 else ("RGBA", _COLOR)
+        yield Pass(column.aov, ids, kind, column.source)
+
+
+def value_columns(view_layer: Any) -> list[ValueColumn]:
+    """The table of numbers that each material has for the view layer's shader AOVs."""
+    columns: list[ValueColumn] = []
+    first = 0
     for aov in view_layer.aovs:
         if aov.is_valid:
-            ids, kind = ("X", _VALUE) if aov.type == "VALUE" else ("RGBA", _COLOR)
-            yield Pass(aov.name, ids, kind, "")
+            columns.append(ValueColumn(aov.name, first, 1 if aov.type == "VALUE" else 4))
+            first += columns[-1].channels
+    return columns
 
 
 def enabled_cryptomattes(view_layer: Any) -> list[str]:

@@ -64,6 +64,8 @@ class CurveData:
     curve_offsets: IntArray  # [curves + 1]
     shape: str = "RIBBONS"  # or THICK
     subdivisions: int = 2  # a ribbon's segment is drawn by 2 ** subdivisions + 1 pieces
+    curve_materials: IntArray | None = None  # [curves], material slots; None: all the first
+    curve_uvs: FloatArray | None = None  # [curves, 2]; None: no UV map, or no pass that shows it
     key: MeshKey | None = None
 
     @property
@@ -199,6 +201,7 @@ class MaterialData:
 
     name: str
     pass_index: int
+    values: list[float] = field(default_factory=list)  # passes.value_columns
 
 
 @dataclass(slots=True)

@@ -69,8 +69,8 @@ struct MeshView {
   const float* normals = nullptr;  ///< [normal_sets][by vertex or by corner][3]; null: all flat
   const std::uint32_t* tri2normal = nullptr;    ///< [triangle_count][3], rows of `normals`
   const std::uint8_t* tri2smooth = nullptr;     ///< [triangle_count]; null: all smooth if `normals`
-  const std::uint16_t* tri2material = nullptr;  ///< [triangle_count]; null: all slot 0
-  const float* tri2uv = nullptr;                ///< [triangle_count][3][2]; null: no UV map is kept
+  const std::uint16_t* tri2material = nullptr;  ///< [triangles or segments]; null: all slot 0
+  const float* tri2uv = nullptr;                ///< [triangles][3][2] or [segments][2]; null: none
   const AttributeView* attributes = nullptr;
   std::uint32_t attribute_count = 0;
   TreeView tree;

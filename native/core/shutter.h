@@ -8,6 +8,7 @@ namespace komorebi {
 /// linear between `cells` + 1 nodes, evenly spaced over [0, 1]; made by ShutterTable
 /// (render/shutter.h). cells = 0: open at once and all the time.
 struct ShutterView {
+  bool still = false;  ///< it stays shut: all is taken at the rest pose, in the middle of the time
   std::uint32_t cells = 0;
   const float* cdf = nullptr;      ///< [cells + 1], from 0 to 1
   const float* density = nullptr;  ///< [cells + 1], of any scale
@@ -16,12 +17,13 @@ struct ShutterView {
   float rolling_height = 0.0f;
   float rolling_duration = 0.0f;
 
-  bool is_plain() const { return cells == 0 && rolling_height == 0.0f; }
+  bool is_plain() const { return cells == 0 && rolling_height == 0.0f && !still; }
 };
 
 /// The inverse transform of the curve, monotone; u in [0, 1). Then the row's delay as Cycles has it
 /// (kernel/camera/camera.h); `y` is the sample's full-frame pixel row, 0 at the bottom.
 inline float shutter_time(const ShutterView& shutter, float u, std::uint32_t y) {
+  if (shutter.still) return 0.5f;
   float time = u;
   if (shutter.cells > 0) {
     std::uint32_t first = 0, count = shutter.cells;  // the last cell whose cdf is ≤ u

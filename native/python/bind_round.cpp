@@ -14,6 +14,7 @@ CurveShape shape_from_name(const std::string& name) {
 std::shared_ptr<Mesh> from_curves(const std::string& name, const py::object& positions,
                                   const py::object& radii, const py::object& curve_offsets,
                                   const std::string& shape, std::uint32_t subdivisions,
+                                  const py::object& curve_materials, const py::object& curve_uvs,
                                   const std::string& builder, unsigned threads,
                                   const std::shared_ptr<Cancel>& cancel) {
   const std::string curves = "curves \"" + name + "\": ";
@@ -24,6 +25,9 @@ std::shared_ptr<Mesh> from_curves(const std::string& name, const py::object& pos
   input.curve_offsets = view<std::int32_t>(curve_offsets, curves + "curve_offsets", {-1});
   input.shape = shape_from_name(shape);
   input.subdivisions = subdivisions;
+  input.curve2material =
+      optional_view<std::int32_t>(curve_materials, curves + "curve_materials", {-1});
+  input.curve2uv = optional_view<float>(curve_uvs, curves + "curve_uvs", {-1, 2});
   const Builder kind = builder_from_name(builder);
   const py::gil_scoped_release release;
   return std::const_pointer_cast<Mesh>(
@@ -52,10 +56,12 @@ void bind_round(py::class_<Mesh, std::shared_ptr<Mesh>>& mesh) {
 
 positions: float32 [K, 3], object space, metres. radii: float32 [K], not negative. curve_offsets:
 int32 [C + 1], first key of each curve. shape: RIBBONS, flat and turned to every ray, of
-2**subdivisions + 1 pieces a segment, or THICK, round. Raises ValueError naming the curves and how
+2**subdivisions + 1 pieces a segment, or THICK, round. curve_materials: int32 [C], material slots;
+None: all the first. curve_uvs: float32 [C, 2], where each grows, for the UV pass. Raises ValueError naming the curves and how
 many entries are wrong, Cancelled.)",
                   py::arg("name"), py::arg("positions"), py::arg("radii"), py::arg("curve_offsets"),
                   py::kw_only(), py::arg("shape") = "RIBBONS", py::arg("subdivisions") = 2,
+                  py::arg("curve_materials") = py::none(), py::arg("curve_uvs") = py::none(),
                   py::arg("builder") = "LINEAR", py::arg("threads") = 0,
                   py::arg("cancel") = std::shared_ptr<Cancel>());
   mesh.def_static("from_points", &from_points,

@@ -24,7 +24,8 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
                                 unsigned threads, const std::shared_ptr<Cancel>& cancel,
                                 const std::shared_ptr<Mesh>& same_geometry,
                                 const py::object& motion_positions,
-                                const py::object& motion_normals) {
+                                const py::object& motion_normals,
+                                const py::object& step_positions) {
   const std::string mesh = "mesh \"" + name + "\": ";
   MeshInput input;
   input.name = name;
@@ -46,6 +47,8 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
       optional_view<float>(motion_positions, mesh + "motion_positions", {-1, vertices, 3});
   input.motion_normals =
       optional_view<float>(motion_normals, mesh + "motion_normals", {-1, normals, 3});
+  input.step_positions =
+      optional_view<float>(step_positions, mesh + "step_positions", {2, vertices, 3});
   const Builder kind = builder_from_name(builder);
   const py::gil_scoped_release release;
   // Python has no const; nothing that is bound below changes a mesh.
@@ -159,7 +162,7 @@ void set_world_environment(Scene& scene, std::shared_ptr<const Environment> envi
 void set_tables(Scene& scene, const py::object& object_pass_index, const py::object& object_mattes,
                 const py::object& object_terminators, const py::object& material_pass_index,
                 const py::object& material_mattes, const py::object& slot_begin,
-                const py::object& slots) {
+                const py::object& slots, const py::object& material_values) {
   const auto object_index = view<float>(object_pass_index, "object_pass_index", {-1});
   const auto objects = static_cast<py::ssize_t>(object_index.size());
   const auto object_ids = view<float>(object_mattes, "object_mattes", {objects, 2});
@@ -177,6 +180,11 @@ void set_tables(Scene& scene, const py::object& object_pass_index, const py::obj
   }
   for (std::size_t i = 0; i < material_index.size(); ++i) {
     tables.materials.push_back({material_index[i], std::bit_cast<std::uint32_t>(material_ids[i])});
+  }
+  const auto values = optional_view<float>(material_values, "material_values", {materials, -1});
+  tables.values.assign(values.begin(), values.end());
+  if (materials > 0) {
+    tables.value_count = static_cast<std::uint32_t>(values.size() / material_index.size());
   }
   tables.slot_begin.assign(begin.begin(), begin.end());
   tables.slots.assign(entries.begin(), entries.end());
@@ -208,6 +216,8 @@ same_geometry: a mesh made from the same positions, motion_positions, corners an
 tree is shared then. motion_positions: float32 [2k, V, 3], positions at the other times of the
 shutter in their order; all with `positions` in the middle are at even times from its opening to its
 closing. motion_normals: float32 [2k, C or V, 3] likewise; None if normals do not change.
+step_positions: float32 [2, V, 3], positions a step of time before and after, which the Vector pass
+of a shutter that stays shut compares; the mesh itself stands still.
 Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
            py::arg("name"), py::arg("positions"), py::arg("corner_verts"), py::arg("face_offsets"),
            py::kw_only(), py::arg("tri2corner") = py::none(), py::arg("tri2face") = py::none(),
@@ -216,7 +226,8 @@ Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
            py::arg("corner_uvs") = py::none(), py::arg("builder") = "LINEAR",
            py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
            py::arg("same_geometry") = std::shared_ptr<Mesh>(),
-           py::arg("motion_positions") = py::none(), py::arg("motion_normals") = py::none())
+           py::arg("motion_positions") = py::none(), py::arg("motion_normals") = py::none(),
+           py::arg("step_positions") = py::none())
       .def(
           "rebuilt",
           [](const Mesh& old, const std::string& builder, unsigned threads,
@@ -288,11 +299,14 @@ void bind_scene(py::module_& module) {
       .def("set_tables", &set_tables, py::kw_only(), py::arg("object_pass_index"),
            py::arg("object_mattes"), py::arg("object_terminators"), py::arg("material_pass_index"),
            py::arg("material_mattes"), py::arg("slot_begin"), py::arg("slots"),
+           py::arg("material_values") = py::none(),
            "What passes tell of objects and materials. Pass indices and Cryptomatte ids: float32 "
            "[N], object_mattes [N, 2] of object and asset. object_terminators: float32 [N, 2], "
            "Blender's shadow_terminator_geometry_offset and the shading one, 0 to 1. List l of "
            "material slots is "
-           "slots[slot_begin[l]:slot_begin[l + 1]], indices of materials; uint32 both.")
+           "slots[slot_begin[l]:slot_begin[l + 1]], indices of materials; uint32 both. "
+           "material_values: float32 [N, K], what holds all over a material; the pass \"Material "
+           "Value f n\" shows n (1 to 4) of them from number f on.")
       .def(
           "set_world_color",
           [](Scene& scene, const std::array<float, 3>& c) {
@@ -312,7 +326,9 @@ void bind_scene(py::module_& module) {
            "width and height of the full frame in pixels. lens, panorama, stereo: dicts of numbers "
            "by the names in native/render/camera_fields.h; panorama[\"kind\"] is Blender's "
            "panorama_type. shutter: dict of curve, float32 [N], weights at even times from the "
-           "opening to the closing (uniform without), and rolling_duration for a rolling shutter. "
+           "opening to the closing (uniform without), and rolling_duration for a rolling shutter; "
+           "or still=True: it stays shut, rays see the poses at rest, and those of instances and "
+           "camera in time are what the pass Vector compares. "
            "motion: dict of matrices, world from camera at an odd number of even times, the middle "
            "one at rest, float64 [2k + 1, 4, 4], and zoom_open and zoom_close: how much wider a "
            "perspective view is then, tan of half the angle over that at rest.")

@@ -83,6 +83,7 @@ CameraDesc camera_input(const std::string& kind, const py::object& matrix, const
     }
     camera.shutter.rolling = numbers.has("rolling_duration");
     numbers("rolling_duration", camera.shutter.rolling_duration);
+    numbers("still", camera.shutter.still);
     numbers.finish();
   }
   if (!motion.is_none()) {

@@ -62,12 +62,13 @@ void add_ambient(const PassLayout& layout, const AmbientPasses& passes, const Ve
 }
 
 void finish_ambient(const RenderContext& context, float* row) {
+  const PassLayout& layout = context.passes;
   const auto rays = static_cast<float>(context.light_samples);
   for (const Quantity q :
        {Quantity::kAmbientOcclusion, Quantity::kSkyVisibility, Quantity::kBentNormal}) {
-    if (!context.passes.keeps(q)) continue;
-    float* to = row + context.passes.place[static_cast<std::size_t>(q)];
-    for (std::uint32_t c = 0; c < channels_of(q); ++c) to[c] /= rays;
+    if (!layout.keeps(q)) continue;
+    float* to = row + layout.place[static_cast<std::size_t>(q)];
+    for (std::uint32_t c = 0; c < layout.channels_of(q); ++c) to[c] /= rays;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/camera.h"
+#include "core/film_steps.h"
 #include "render/panorama.h"
 #include "render/shutter.h"
 
@@ -59,6 +60,11 @@ struct CameraDesc {
 ///
 /// The camera stands still and its shutter is plain: see CameraTables.
 CameraView make_camera(const CameraDesc& desc, const Vec3d& scene_origin);
+
+/// The ways back to the film at the first pose, at rest and at the last one; all the same without
+/// poses. `camera` is make_camera's of the same arguments, which CameraTables has accepted.
+FilmSteps make_film_steps(const CameraDesc& desc, const Vec3d& scene_origin,
+                          const CameraView& camera);
 
 /// Owns what a CameraView's shutter and motion read.
 class CameraTables {

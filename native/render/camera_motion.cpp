@@ -29,7 +29,56 @@ bool is_zoom(double x) {
   return x > 0.0 && x <= 1e6;
 }
 
+Vec3d position(const Mat4d& pose, const Vec3d& scene_origin) {
+  return Vec3d(pose[3]) - scene_origin;
+}
+
+/// `second` after `first`.
+AffineMap chained(const AffineMap& second, const AffineMap& first) {
+  return {second.linear * first.linear, second.linear * first.translation + second.translation};
+}
+
+/// The film of a camera at rest, or zoomed.
+/// @param axis  per unit of depth, around which it zooms
+AffineMap into_film(const CameraView& camera, double zoom, const Vec3d& axis) {
+  const Mat3d film = camera.kind == CameraKind::kPanorama
+                         ? camera.world_from_camera
+                         : Mat3d(zoom * camera.per_x, zoom * camera.per_y,
+                                 axis + zoom * (camera.direction - axis));
+  const Mat3d inverse = glm::inverse(film);
+  return {inverse, -(inverse * camera.origin)};
+}
+
 }  // namespace
+
+FilmSteps make_film_steps(const CameraDesc& desc, const Vec3d& scene_origin,
+                          const CameraView& camera) {
+  FilmSteps film;
+  film.kind = camera.kind;
+  film.panorama = camera.panorama;
+  film.center_x = camera.film_center_x;
+  film.center_y = camera.film_center_y;
+  film.rest = film.before = film.after = into_film(camera, 1.0, Vec3d(0.0));
+  const CameraMotionDesc& motion = desc.motion;
+  if (motion.poses.empty()) return film;
+  const Mat4d& rest_pose = motion.poses[motion.poses.size() / 2];
+  const Mat4d rest = unscaled(rest_pose);
+  Vec3d axis = -Vec3d(rest[2]);
+  if (camera.kind == CameraKind::kPerspective) axis /= glm::dot(axis, camera.depth_gradient);
+  const auto at = [&](const Mat4d& pose, double zoom) {
+    const AffineMap map = zoom != 1.0 ? into_film(camera, zoom, axis) : film.rest;
+    if (pose == rest_pose) return map;
+    // From the pose to the rest: there the film is known.
+    const Mat4d there = unscaled(pose);
+    const Mat3d back = Mat3d(rest) * glm::inverse(Mat3d(there));
+    const AffineMap to_rest{back,
+                            position(rest, scene_origin) - back * position(there, scene_origin)};
+    return chained(map, to_rest);
+  };
+  film.before = at(motion.poses.front(), motion.zoom_open);
+  film.after = at(motion.poses.back(), motion.zoom_close);
+  return film;
+}
 
 CameraTables::CameraTables(const CameraDesc& desc, const Vec3d& scene_origin,
                            const CameraView& camera)
@@ -67,7 +116,8 @@ CameraTables::CameraTables(const CameraDesc& desc, const Vec3d& scene_origin,
   }
   motion_.zoom_open = motion.zoom_open;
   motion_.zoom_close = motion.zoom_close;
-  if (!moves) return;
+  if (desc.shutter.still) motion_ = {};
+  if (!moves || desc.shutter.still) return;
   poses_ = decompose_poses(poses, scene_origin);
   motion_.pose_count = static_cast<std::uint32_t>(count);
 }

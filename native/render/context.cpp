@@ -1,6 +1,7 @@
 #include "render/context.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace komorebi {
 namespace {
@@ -53,12 +54,21 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.light_samples = resolved_light_samples(settings);
   context.passes =
       make_pass_layout(settings.passes, scene.has_catchers(), settings.film_transparent);
-  context.tables = &scene.tables();
-  const bool lifts = scene.tables().lifts_rays();
+  const SceneTables& tables = scene.tables();
+  if (!tables.materials.empty() && context.passes.values > tables.value_count) {
+    throw std::invalid_argument("a pass asks for a material value that the scene does not have");
+  }
+  context.has_vector = context.passes.keeps(Quantity::kVector) && scene.is_still();
+  if (context.has_vector) {
+    context.film_steps = scene.film_steps();
+    context.steps = scene.steps();
+  }
+  context.tables = &tables;
+  const bool lifts = tables.lifts_rays();
   // Cycles lifts the rays to lights and those of ambient occlusion, but not what it samples by the
   // surface, which is all there is under an even sky.
   context.lifts_rays = lifts && (ao || !scene.world_is_uniform());
-  context.cuts_cosines = !ao && scene.tables().cuts_cosines();
+  context.cuts_cosines = !ao && tables.cuts_cosines();
   context.has_terminators =
       context.lifts_rays || context.cuts_cosines || (lifts && context.passes.keeps_ambient());
   context.bends_round = context.lifts_rays && !ao;

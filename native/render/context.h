@@ -33,6 +33,10 @@ struct RenderContext {
   std::uint32_t seed = 0;
   std::uint32_t light_samples = 1;
 
+  FilmSteps film_steps;  ///< for the Vector pass
+  StepsView steps;
+  bool has_vector = false;  ///< whether that pass is kept and not black, as where motion is blurred
+
   PassLayout passes;                    ///< what is kept besides radiance and alpha
   const SceneTables* tables = nullptr;  ///< for passes that tell what is seen
   Vec3d origin{0.0};                    ///< of the scene's space in Blender's

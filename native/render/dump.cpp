@@ -56,6 +56,10 @@ void put_mesh(ArrayFile& file, const std::string& key, const Mesh& mesh) {
         without_rest(span_of(v.vtx2xyz, sets * coordinates), coordinates, sets);
     file.put<float>(key + "motion_positions", others, {sets - 1, v.vertex_count, 3});
   }
+  if (mesh.step_positions()) {
+    file.put<float>(key + "step_positions", span_of(mesh.step_positions(), 2 * coordinates),
+                    {2, v.vertex_count, 3});
+  }
   put_rows<std::uint32_t>(file, key + "tri2vtx", span_of(v.tri2vtx, 3 * triangles), 3);
   if (v.normals) {
     const std::size_t normal_sets = v.normal_sets, size = 9 * triangles;
@@ -127,13 +131,18 @@ std::shared_ptr<const Mesh> get_mesh(const ArrayFile& file, const std::string& k
   for (std::size_t f = 0; f < face_offsets.size(); ++f) {
     face_offsets[f] = static_cast<std::int32_t>(3 * f);
   }
-  std::vector<float> motion_positions, motion_normals;
-  if (file.has(key + "motion_positions")) {
-    motion_positions = file.get<float>(key + "motion_positions");
-    for (std::size_t i = 0; i < motion_positions.size(); ++i) {
-      motion_positions[i] = static_cast<float>(double{motion_positions[i]} + origin[i % 3]);
+  const auto in_time = [&](const char* name) {
+    std::vector<float> positions;
+    if (!file.has(key + name)) return positions;
+    positions = file.get<float>(key + name);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      positions[i] = static_cast<float>(double{positions[i]} + origin[i % 3]);
     }
-  }
+    return positions;
+  };
+  const std::vector<float> motion_positions = in_time("motion_positions");
+  const std::vector<float> step_positions = in_time("step_positions");
+  std::vector<float> motion_normals;
   if (file.has(key + "motion_corner2normal")) {
     motion_normals = file.get<float>(key + "motion_corner2normal");
   }
@@ -152,6 +161,7 @@ std::shared_ptr<const Mesh> get_mesh(const ArrayFile& file, const std::string& k
   input.corner2normal = normals;
   input.motion_positions = motion_positions;
   input.motion_normals = motion_normals;
+  input.step_positions = step_positions;
   input.face2smooth = smooth;
   input.face2material = materials;
   return Mesh::build(input, choose_builder(face_offsets.size() - 1, expected_rays), pool, cancel);

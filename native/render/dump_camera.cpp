@@ -44,6 +44,7 @@ void put_motion(ArrayFile& file, const CameraDesc& camera) {
   if (!shutter.curve.empty()) {
     file.put<float>("camera/shutter/curve", shutter.curve, {shutter.curve.size()});
   }
+  if (shutter.still) file.put_value<std::uint32_t>("camera/shutter/still", 1);
   if (shutter.rolling) {
     file.put_value<double>("camera/shutter/rolling_duration", shutter.rolling_duration);
   }
@@ -61,6 +62,7 @@ void get_motion(const ArrayFile& file, CameraDesc& camera) {
   if (file.has("camera/shutter/curve")) {
     camera.shutter.curve = file.get<float>("camera/shutter/curve");
   }
+  camera.shutter.still = file.has("camera/shutter/still");
   camera.shutter.rolling = file.has("camera/shutter/rolling_duration");
   if (camera.shutter.rolling) {
     camera.shutter.rolling_duration = file.get_value<double>("camera/shutter/rolling_duration");

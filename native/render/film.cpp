@@ -5,6 +5,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "core/motion_vector.h"
+
 namespace komorebi {
 namespace {
 
@@ -22,15 +24,19 @@ double power_of_two_scale(double bound, int bits) {
 }
 
 /// A thirty-second of what a channel of a quantity may come to.
-double bound_of(Quantity q, std::uint32_t channel, double radiance) {
+double bound_of(Quantity q, std::uint32_t channel, double radiance, double value) {
   switch (q) {
     case Quantity::kEnvironment:
     case Quantity::kCatcherLight:
       return radiance;
     case Quantity::kMatte:
       return channel < 3 ? radiance : 1.0;
+    case Quantity::kMaterialValue:
+      return value;
     case Quantity::kUv:
       return 2047.0;
+    case Quantity::kVector:
+      return kMaxMotionVector / 32.0;
     case Quantity::kDenoisingDepth:
       return 2097151.0;  // 67,000 km, to a thousandth of a millimetre
     default:
@@ -40,7 +46,8 @@ double bound_of(Quantity q, std::uint32_t channel, double radiance) {
 
 }  // namespace
 
-Film::Film(const Rect& region, const Settings& settings, float max_radiance, bool catchers)
+Film::Film(const Rect& region, const Settings& settings, float max_radiance, bool catchers,
+           float max_value)
     : region_(region),
       first_sample_(settings.sample_offset),
       samples_(settings.samples),
@@ -68,9 +75,9 @@ Film::Film(const Rect& region, const Settings& settings, float max_radiance, boo
     const auto quantity = static_cast<Quantity>(q);
     const std::int16_t place = layout_.place[q];
     if (place == PassLayout::kNone || place >= layout_.means) continue;
-    for (std::uint32_t c = 0; c < channels_of(quantity); ++c) {
+    for (std::uint32_t c = 0; c < layout_.channels_of(quantity); ++c) {
       mean_scale_[static_cast<std::size_t>(place) + c] =
-          power_of_two_scale(bound_of(quantity, c, radiance), bits);
+          power_of_two_scale(bound_of(quantity, c, radiance, double{max_value}), bits);
     }
   }
   for (std::size_t k = 0; k < layout_.ids; ++k) mattes_[k].resize(counts_.size());

@@ -48,7 +48,9 @@ class Film {
   /// counted, which only a defect elsewhere can cause. Throws std::invalid_argument for a pass
   /// that is not known. With `catchers` the picture is composed of what is no shadow catcher over
   /// the shadows on those that are.
-  Film(const Rect& region, const Settings& settings, float max_radiance, bool catchers = false);
+  /// `max_value`: bound of the materials' values (SceneTables).
+  Film(const Rect& region, const Settings& settings, float max_radiance, bool catchers = false,
+       float max_value = 1.0f);
 
   const Rect& region() const { return region_; }
   const PassLayout& layout() const { return layout_; }
@@ -102,6 +104,7 @@ class Film {
   void read_run(const PassDesc& desc, std::uint32_t part, std::size_t i, std::uint32_t x,
                 std::uint32_t y, std::size_t count, float* out) const;
   void read_variance(std::size_t i, std::size_t count, double samples, float* out) const;
+  void read_mean_of_hits(const PassDesc& desc, std::size_t i, std::size_t count, float* out) const;
   /// The picture of a scene with shadow catchers.
   void read_composed(std::size_t i, std::size_t count, double samples, float* out) const;
   /// A quantity's mean in one pixel.

@@ -90,6 +90,22 @@ void Film::read_variance(std::size_t i, std::size_t count, double samples, float
   }
 }
 
+void Film::read_mean_of_hits(const PassDesc& desc, std::size_t i, std::size_t count,
+                             float* out) const {
+  const auto place = [&](Quantity q) {
+    return static_cast<std::size_t>(layout_.place[static_cast<std::size_t>(q)]);
+  };
+  const std::size_t at = place(desc.quantity), weight_at = place(Quantity::kVectorWeight);
+  for (std::size_t end = i + count; i < end; ++i) {
+    const std::int64_t* sums = &means_[layout_.means * i];
+    const double hits = static_cast<double>(sums[weight_at]) / mean_scale_[weight_at];
+    for (std::size_t c = at; c < at + desc.channels; ++c) {
+      *out++ = static_cast<float>(
+          hits > 0.0 ? static_cast<double>(sums[c]) / (mean_scale_[c] * hits) : 0.0);
+    }
+  }
+}
+
 void Film::read_run(const PassDesc& desc, std::uint32_t part, std::size_t i, std::uint32_t x,
                     std::uint32_t y, std::size_t count, float* out) const {
   const std::size_t this_cell = cell(x, y);
@@ -97,7 +113,8 @@ void Film::read_run(const PassDesc& desc, std::uint32_t part, std::size_t i, std
   const std::int16_t place = desc.quantity == Quantity::kCount
                                  ? std::int16_t{0}
                                  : layout_.place[static_cast<std::size_t>(desc.quantity)];
-  const auto at = static_cast<std::size_t>(place);
+  const auto at =
+      static_cast<std::size_t>(place) + (desc.quantity == Quantity::kMaterialValue ? part : 0);
   switch (desc.rule) {
     case PassRule::kCount:
       std::fill_n(out, count, static_cast<float>(seen / samples_));
@@ -131,6 +148,9 @@ void Film::read_run(const PassDesc& desc, std::uint32_t part, std::size_t i, std
         for (int c = 0; c < 3; ++c)
           *out++ = static_cast<float>(length > 0.0 ? sum[c] / length : 0.0);
       }
+      return;
+    case PassRule::kMeanOfHits:
+      read_mean_of_hits(desc, i, count, out);
       return;
     case PassRule::kMean:
       break;
@@ -172,7 +192,9 @@ void Film::read(const std::string& name, const Rect& rect, float* out) const {
 
 void Film::read(const std::string& name, const Rect& rect, float* out, ThreadPool& pool) const {
   const PassDesc& desc = find_pass(name);
-  const std::uint32_t part = desc.rule == PassRule::kMatte ? matte_part(name) : 0;
+  const std::uint32_t part = desc.rule == PassRule::kMatte               ? matte_part(name)
+                             : desc.quantity == Quantity::kMaterialValue ? first_value(name)
+                                                                         : 0;
   if (rect.x_min < region_.x_min || rect.y_min < region_.y_min || rect.x_max > region_.x_max ||
       rect.y_max > region_.y_max || rect.x_min > rect.x_max || rect.y_min > rect.y_max) {
     throw std::invalid_argument("the rectangle to read lies outside the film");

@@ -111,6 +111,15 @@ void Mesh::take_uvs(const MeshInput& in, ThreadPool& pool, const Cancel& cancel)
   });
 }
 
+void Mesh::take_steps(const MeshInput& in, ThreadPool& pool, const Cancel& cancel) {
+  step_xyz_.resize(in.step_positions.size());
+  const Vec3 shift(origin());  // exact: see MeshGeometry
+  for_each_index(step_xyz_.size() / 3, pool, cancel, [&](std::size_t i) {
+    const Vec3 local = row(in.step_positions, i) - shift;
+    for (std::size_t c = 0; c < 3; ++c) step_xyz_[3 * i + c] = local[static_cast<int>(c)];
+  });
+}
+
 std::shared_ptr<const Mesh> Mesh::build(const MeshInput& in, Builder builder, ThreadPool& pool,
                                         const Cancel& cancel, const Mesh* same_geometry) {
   check_mesh(in, pool);
@@ -131,12 +140,37 @@ std::shared_ptr<const Mesh> Mesh::build(const MeshInput& in, Builder builder, Th
   mesh->take_normals(in, pool, cancel);
   mesh->take_materials(in, pool, cancel);
   mesh->take_uvs(in, pool, cancel);
+  mesh->take_steps(in, pool, cancel);
   return mesh;
+}
+
+/// A strand is the same all along.
+void Mesh::take_shading(const CurvesInput& in) {
+  const auto other_slot = [](std::int32_t slot) { return slot != 0; };
+  if (std::ranges::any_of(in.curve2material, other_slot)) {
+    tri2material_.resize(primitive_count());
+  }
+  if (!in.curve2uv.empty()) tri2uv_.resize(2 * std::size_t{primitive_count()});
+  std::size_t segment = 0;
+  for (std::size_t c = 0; c + 1 < in.curve_offsets.size(); ++c) {
+    for (std::int32_t key = in.curve_offsets[c]; key + 1 < in.curve_offsets[c + 1]; ++key) {
+      if (!tri2material_.empty()) {
+        tri2material_[segment] = static_cast<std::uint16_t>(in.curve2material[c]);
+      }
+      for (std::size_t k = 0; k < 2 && !tri2uv_.empty(); ++k) {
+        const float value = in.curve2uv[2 * c + k];
+        tri2uv_[2 * segment + k] = std::isfinite(value) ? value : 0.0f;
+      }
+      ++segment;
+    }
+  }
 }
 
 std::shared_ptr<const Mesh> Mesh::build(const CurvesInput& in, Builder builder, ThreadPool& pool,
                                         const Cancel& cancel) {
-  return std::shared_ptr<const Mesh>(new Mesh(in.name, build_curves(in, builder, pool, cancel)));
+  std::shared_ptr<Mesh> mesh(new Mesh(in.name, build_curves(in, builder, pool, cancel)));
+  mesh->take_shading(in);
+  return mesh;
 }
 
 std::shared_ptr<const Mesh> Mesh::build(const PointsInput& in, Builder builder, ThreadPool& pool,
@@ -148,7 +182,9 @@ std::shared_ptr<const Mesh> Mesh::flattened(const Mat4d& matrix, ThreadPool& poo
                                             const Cancel& cancel) const {
   if (round_) {
     RoundGeometry moved = round_->transformed(matrix, Builder::kLinear, pool, cancel);
-    return std::shared_ptr<const Mesh>(new Mesh(name_, std::move(moved)));
+    std::shared_ptr<Mesh> mesh(new Mesh(name_, std::move(moved)));
+    mesh->take_shading(*this);
+    return mesh;
   }
   const Array<float>& positions = geometry_->vtx2xyz;
   std::vector<float> moved(positions.size());
@@ -178,6 +214,8 @@ void Mesh::take_shading(const Mesh& other) {
   tri2smooth_ = other.tri2smooth_;
   tri2material_ = other.tri2material_;
   tri2uv_ = other.tri2uv_;
+  step_xyz_ = other.step_xyz_;
+  if (normals_.empty()) return;
   if (other.tri2normal_ == other.geometry_->tri2vtx.data()) {
     tri2normal_ = geometry_->tri2vtx.data();
   } else if (!every_corner_.empty()) {
@@ -191,7 +229,9 @@ std::shared_ptr<const Mesh> Mesh::rebuilt(Builder builder, ThreadPool& pool,
                                           const Cancel& cancel) const {
   if (round_) {
     RoundGeometry same = round_->transformed(Mat4d(1.0), builder, pool, cancel);
-    return std::shared_ptr<const Mesh>(new Mesh(name_, std::move(same)));
+    std::shared_ptr<Mesh> mesh(new Mesh(name_, std::move(same)));
+    mesh->take_shading(*this);
+    return mesh;
   }
   const auto geometry = std::make_shared<MeshGeometry>();
   geometry->origin = geometry_->origin;
@@ -243,7 +283,7 @@ MeshView Mesh::view() const {
 std::size_t Mesh::byte_count() const {
   const std::size_t geometry = round_ ? round_->byte_count() : geometry_->byte_count();
   return sizeof(Mesh) + geometry + bytes(normals_) + bytes(every_corner_) + bytes(tri2smooth_) +
-         bytes(tri2material_) + bytes(tri2uv_);
+         bytes(tri2material_) + bytes(tri2uv_) + bytes(step_xyz_);
 }
 
 }  // namespace komorebi

@@ -37,6 +37,8 @@ class Mesh {
                                       const Cancel& cancel) const;
 
   MeshView view() const;
+  /// MeshInput::step_positions in local space, or null.
+  const float* step_positions() const { return step_xyz_.empty() ? nullptr : step_xyz_.data(); }
   const std::string& name() const { return name_; }
   const Vec3d& origin() const { return round_ ? round_->origin : geometry_->origin; }
   /// Relative to `origin`, conservative.
@@ -72,6 +74,7 @@ class Mesh {
  private:
   Mesh() = default;
   void take_shading(const Mesh& other);
+  void take_shading(const CurvesInput& input);
   Mesh(std::string name, RoundGeometry round)
       : name_(std::move(name)),
         geometry_(std::make_shared<const MeshGeometry>()),
@@ -79,6 +82,7 @@ class Mesh {
   void take_normals(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
   void take_materials(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
   void take_uvs(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
+  void take_steps(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
 
   std::string name_;
   std::shared_ptr<const MeshGeometry> geometry_;  // empty where there are curves or points
@@ -90,8 +94,9 @@ class Mesh {
   const std::uint32_t* tri2normal_ = nullptr;  // into geometry_, or every_corner_
   Array<std::uint32_t> every_corner_;          // 0, 1, 2 …
   Array<std::uint8_t> tri2smooth_;
-  Array<std::uint16_t> tri2material_;
-  Array<float> tri2uv_;  // [triangles][3][2]
+  Array<std::uint16_t> tri2material_;  // of curves by segment
+  Array<float> tri2uv_;                // [triangles][3][2]; of curves [segments][2]
+  Array<float> step_xyz_;              // [2][vertices][3], relative to the origin
 };
 
 }  // namespace komorebi

@@ -119,6 +119,13 @@ void check_mesh(const MeshInput& in, ThreadPool& pool) {
   if (const auto bad = count_non_finite_rows(in.motion_positions, pool)) {
     refuse(in.name, counted(bad, "vertex in time is", "vertices in time are") + " not finite");
   }
+  if (!in.step_positions.empty() && (in.step_positions.size() != 2 * positions ||  //
+                                     !in.motion_positions.empty())) {
+    refuse(in.name, "step_positions must have a row a vertex at two times, without others in time");
+  }
+  if (const auto bad = count_non_finite_rows(in.step_positions, pool)) {
+    refuse(in.name, counted(bad, "vertex at a step is", "vertices at a step are") + " not finite");
+  }
   const std::size_t normals = std::max(in.vtx2normal.size(), in.corner2normal.size());
   if (!in.motion_normals.empty() && in.motion_normals.size() != (in.set_count() - 1) * normals) {
     refuse(in.name, "motion_normals must have a row a normal at the times of motion_positions");

@@ -27,6 +27,9 @@ struct MeshInput {
   /// `vtx2xyz` are those in the middle; all together are at even times over the shutter.
   std::span<const float> motion_positions;
   std::span<const float> motion_normals;  ///< [2 k][rows of normals][3]; empty: those do not change
+  /// Positions a step of time before and after, [2][vertices][3], for the Vector pass of a mesh
+  /// that stands still while the shutter is open; or empty.
+  std::span<const float> step_positions;
 
   /// At how many times there are positions.
   std::uint32_t set_count() const {

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/motion_vector.h"
 #include "core/surface_point.h"
 
 namespace komorebi {
@@ -45,6 +46,10 @@ float mist(const RenderContext& context, const Vec3d& position) {
 
 Vec3 uv_at(const MeshView& mesh, const Hit& hit) {
   if (!mesh.tri2uv) return Vec3(0.0f);
+  if (is_round(mesh.kind)) {
+    const float* uv = mesh.tri2uv + 2 * std::size_t{hit.primitive};
+    return Vec3(uv[0], uv[1], 1.0f);
+  }
   const float* uv = mesh.tri2uv + 6 * std::size_t{hit.primitive};
   const float w = 1.0f - hit.u - hit.v;
   return Vec3(w * uv[0] + hit.u * uv[2] + hit.v * uv[4], w * uv[1] + hit.u * uv[3] + hit.v * uv[5],
@@ -65,6 +70,14 @@ void put_first(const RenderContext& context, const Hit& hit, const Ray& ray, flo
   }
 }
 
+void put_values(const RenderContext& context, std::uint32_t material, float* row) {
+  const PassLayout& layout = context.passes;
+  const SceneTables& tables = *context.tables;
+  if (layout.values == 0 || material == kNone) return;
+  std::copy_n(&tables.values[std::size_t{material} * tables.value_count], layout.values,
+              row + layout.place[static_cast<std::size_t>(Quantity::kMaterialValue)]);
+}
+
 }  // namespace
 
 void clear_row(const PassLayout& layout, float* row) {
@@ -79,10 +92,12 @@ void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, c
   const InstanceView& instance = context.scene.instances[hit.instance];
   const MeshView& mesh = context.scene.meshes[instance.mesh];
   const bool first = layout.firsts > 0 && sample == context.first_sample;
-  if (first || layout.ids > 0) {
+  if (first || layout.ids > 0 || layout.values > 0) {
     const std::uint32_t slot = mesh.tri2material ? mesh.tri2material[hit.primitive] : 0;
+    const std::uint32_t index = context.tables->material_index(instance.material_slots, slot);
     const ObjectInfo object = context.tables->object(instance.object_index);
-    const MaterialInfo material = context.tables->material(instance.material_slots, slot);
+    const MaterialInfo material = context.tables->material(index);
+    put_values(context, index, row);
     if (first) put_first(context, hit, ray, depth, object, material, row);
     layout.put(row, Quantity::kMatteObject, std::bit_cast<float>(object.matte));
     layout.put(row, Quantity::kMatteAsset, std::bit_cast<float>(object.matte_asset));
@@ -91,6 +106,12 @@ void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, c
   layout.put(row, Quantity::kNormal, normal);
   layout.put(row, Quantity::kDiffuseColor, context.albedo);
   layout.put(row, Quantity::kDenoisingDepth, hit.t);
+  if (context.has_vector) {
+    const glm::vec4 vector = motion_vector(context.scene, context.steps, context.film_steps, hit);
+    float* to = row + layout.place[static_cast<std::size_t>(Quantity::kVector)];
+    for (int c = 0; c < 4; ++c) to[c] = vector[c];
+    layout.put(row, Quantity::kVectorWeight, 1.0f);
+  }
   if (layout.keeps(Quantity::kUv)) layout.put(row, Quantity::kUv, uv_at(mesh, hit));
   if (layout.keeps(Quantity::kMist)) {
     const Vec3d at = Vec3d(ray.origin) + double{hit.t} * Vec3d(ray.direction);

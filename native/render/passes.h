@@ -12,6 +12,7 @@ namespace komorebi {
 /// How the samples of a pixel become its value in a pass.
 enum class PassRule : std::uint32_t {
   kMean,         ///< sum of the samples over their number
+  kMeanOfHits,   ///< over the number of those that have hit something
   kFirstSample,  ///< what the sample with the lowest index saw: places and indices, as Cycles
   kDirection,    ///< the sum of the samples as a unit vector; null where it is null
   kCount,        ///< the number of samples over the largest, `samples` (as Cycles)
@@ -39,8 +40,11 @@ enum class Quantity : std::uint8_t {
   kAmbientOcclusion,
   kSkyVisibility,
   kBentNormal,
-  kCatcherLight,  ///< of shadow catchers, were there nothing but them
-  kMatte,         ///< what is no shadow catcher: premultiplied radiance and alpha
+  kVector,
+  kVectorWeight,   ///< 1 for a sample that has a vector
+  kCatcherLight,   ///< of shadow catchers, were there nothing but them
+  kMaterialValue,  ///< as many channels of SceneTables::values as passes ask for
+  kMatte,          ///< what is no shadow catcher: premultiplied radiance and alpha
   // Cryptomatte ids:
   kMatteObject,
   kMatteMaterial,
@@ -59,7 +63,8 @@ struct PassDesc {
 };
 
 /// The passes that a film can keep. Names are Blender's where it has one; a Cryptomatte comes in
-/// parts of two ranks each, "CryptoObject00" and so on.
+/// parts of two ranks each, "CryptoObject00" and so on. "Material Value f n" is n (1 to 4) floats
+/// of the material's row of SceneTables::values, from number f on: the mean over all samples.
 std::span<const PassDesc> known_passes();
 
 /// @throws std::invalid_argument if there is no such pass
@@ -68,6 +73,9 @@ const PassDesc& find_pass(const std::string& name);
 /// The number at the end of a Cryptomatte part's name.
 std::uint32_t matte_part(const std::string& name);
 
+/// Where in the row of values a "Material Value" begins.
+std::uint32_t first_value(const std::string& name);
+
 /// Which quantities a film keeps, and where each stands in the row of floats that a sample leaves:
 /// first the means, then what only the first sample counts for, then the ids of Cryptomattes.
 struct PassLayout {
@@ -75,10 +83,12 @@ struct PassLayout {
 
   std::int16_t place[kQuantities];
   std::uint16_t means = 0, firsts = 0, ids = 0;
+  std::uint16_t values = 0;  ///< channels of kMaterialValue
   bool keeps_variance = false;
 
   PassLayout();
   std::size_t size() const { return std::size_t{means} + firsts + ids; }
+  std::uint32_t channels_of(Quantity q) const;
   bool keeps(Quantity q) const { return place[static_cast<std::size_t>(q)] != kNone; }
   /// Rays of their own that no other part of the render casts.
   bool keeps_ambient() const;
@@ -113,8 +123,5 @@ struct PassLayout {
 /// @throws std::invalid_argument for a pass that is not known
 PassLayout make_pass_layout(const std::vector<std::string>& passes, bool catchers,
                             bool film_transparent);
-
-/// Channels of a quantity in the row.
-std::uint32_t channels_of(Quantity q);
 
 }  // namespace komorebi

@@ -1,5 +1,6 @@
 #include "render/round_geometry.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -54,6 +55,17 @@ void check_curves(const CurvesInput& in) {
   std::size_t bad = 0;
   for (std::size_t c = 0; c + 1 < offsets.size(); ++c) bad += offsets[c + 1] < offsets[c] ? 1u : 0u;
   checker.count(bad, "curve ends before it begins", "curves end before they begin");
+  const std::size_t curves = offsets.size() - 1;
+  if (!in.curve2material.empty() && in.curve2material.size() != curves) {
+    checker.refuse("curve_materials must have one entry a curve");
+  }
+  checker.count(static_cast<std::size_t>(std::ranges::count_if(
+                    in.curve2material, [](std::int32_t slot) { return slot < 0 || slot > 32767; })),
+                "curve has a material slot outside 0 to 32767",
+                "curves have a material slot outside 0 to 32767");
+  if (!in.curve2uv.empty() && in.curve2uv.size() != 2 * curves) {
+    checker.refuse("curve_uvs must have one row a curve");
+  }
   if (in.subdivisions > kMaxSubdivisions) {
     checker.refuse("subdivisions must be at most " + std::to_string(kMaxSubdivisions));
   }

@@ -18,6 +18,8 @@ struct CurvesInput {
   std::span<const std::int32_t> curve_offsets;  ///< [curves + 1], first key of each curve
   CurveShape shape = CurveShape::kRibbon;
   std::uint32_t subdivisions = 2;  ///< a ribbon's segment has 2^subdivisions + 1 pieces
+  std::span<const std::int32_t> curve2material;  ///< [curves]; empty: slot 0
+  std::span<const float> curve2uv;               ///< [curves][2], where it grows; empty: no UVs
 };
 
 /// A point cloud: a sphere a point.

@@ -149,6 +149,14 @@ void Scene::set_tables(SceneTables tables) {
   if (!covers || !std::is_sorted(begin.begin(), begin.end())) {
     throw std::invalid_argument("the lists of material slots do not cover the slots in order");
   }
+  if (tables.values.size() != tables.materials.size() * tables.value_count) {
+    throw std::invalid_argument("material values must have a row a material");
+  }
+  for (const float value : tables.values) {
+    if (!(value >= -1e30f && value <= 1e30f)) {
+      throw std::invalid_argument("a material value is not finite or beyond 1e30");
+    }
+  }
   for (const std::uint32_t material : tables.slots) {
     if (material >= tables.materials.size()) {
       throw std::invalid_argument("a material slot names material " + std::to_string(material) +
@@ -161,6 +169,11 @@ void Scene::set_tables(SceneTables tables) {
 EnvironmentView Scene::environment() const {
   return environment_ ? environment_->view(strength_, texture_from_world_)
                       : constant_environment(world_color_);
+}
+
+StepsView Scene::steps() const {
+  return {steps_.data(), instance2steps_.empty() ? nullptr : instance2steps_.data(),
+          mesh_steps_.empty() ? nullptr : mesh_steps_.data()};
 }
 
 float Scene::max_radiance() const {
@@ -198,11 +211,23 @@ void Scene::place(const InstanceInput& input, std::span<const Mat4d> poses, Thre
   instance.local_from_world = Mat3(inverse);
   instance.position = Vec3(position - origin_);
   place_instance(instance, mesh->bounds());
-  if (!poses.empty()) {
+  if (!poses.empty() && is_still()) {
+    add_steps(poses, mesh->origin());
+  } else if (!poses.empty()) {
     motion_.add(static_cast<std::uint32_t>(instances_.size()), instance, poses, mesh->origin(),
                 mesh->bounds(), origin_);
   }
   instances_.push_back(instance);
+}
+
+void Scene::add_steps(std::span<const Mat4d> poses, const Vec3d& mesh_origin) {
+  const auto map = [&](const Mat4d& pose) {
+    const Mat3d linear(pose);
+    return AffineMap{linear, Vec3d(pose[3]) - origin_ + linear * mesh_origin};
+  };
+  instance2steps_.resize(inputs_.size(), kNone);
+  instance2steps_[instances_.size()] = static_cast<std::uint32_t>(steps_.size());
+  steps_.push_back({map(poses.front()), map(poses[poses.size() / 2]), map(poses.back())});
 }
 
 void Scene::choose_origin() {
@@ -220,6 +245,7 @@ void Scene::choose_origin() {
   };
   for (const InstanceInput& input : inputs_) include(*meshes_[input.mesh], input.world_from_object);
   for (const MovingInput& input : moving_inputs_) {
+    if (is_still()) break;
     for (std::uint32_t i = 0; i < input.pose_count; ++i) {
       include(*meshes_[inputs_[input.instance].mesh], poses_[input.first_pose + i]);
     }
@@ -276,6 +302,7 @@ void Scene::commit(ThreadPool& pool, const Cancel& cancel, bool keep_inputs) {
     camera_ = make_camera(camera_desc_, origin_);
     camera_tables_ = CameraTables(camera_desc_, origin_, camera_);
     camera_tables_.lend(camera_);
+    film_steps_ = make_film_steps(camera_desc_, origin_, camera_);
   }
 
   view_.meshes = mesh_views_.data();
@@ -290,6 +317,8 @@ void Scene::commit(ThreadPool& pool, const Cancel& cancel, bool keep_inputs) {
   view_.motion_group_count = static_cast<std::uint32_t>(motion_.groups.size());
   view_.moves = !motion_.groups.empty();
   for (const auto& mesh : traced_meshes_) view_.moves = view_.moves || mesh->deforms();
+  if (!is_still()) return;
+  for (const auto& mesh : traced_meshes_) mesh_steps_.push_back(mesh->step_positions());
 }
 
 std::uint64_t Scene::triangle_count() const {
@@ -303,11 +332,12 @@ std::uint64_t Scene::triangle_count() const {
 }
 
 std::size_t Scene::byte_count() const {
-  std::size_t sum = sizeof(Scene) + tree_.byte_count() +
-                    instances_.capacity() * sizeof(InstanceView) +
-                    inputs_.capacity() * sizeof(InstanceInput) +
-                    mesh_views_.capacity() * sizeof(MeshView) + poses_.capacity() * sizeof(Mat4d) +
-                    moving_inputs_.capacity() * sizeof(MovingInput) + motion_.byte_count();
+  std::size_t sum =
+      sizeof(Scene) + tree_.byte_count() + instances_.capacity() * sizeof(InstanceView) +
+      inputs_.capacity() * sizeof(InstanceInput) + mesh_views_.capacity() * sizeof(MeshView) +
+      poses_.capacity() * sizeof(Mat4d) + moving_inputs_.capacity() * sizeof(MovingInput) +
+      motion_.byte_count() + steps_.capacity() * sizeof(InstanceSteps) +
+      instance2steps_.capacity() * sizeof(std::uint32_t);
   for (const auto& mesh : traced_meshes_.empty() ? meshes_ : traced_meshes_) {
     sum += mesh->byte_count();
   }

@@ -8,6 +8,7 @@
 #include "bvh/instance_tree.h"
 #include "core/camera.h"
 #include "core/environment.h"
+#include "core/motion_vector.h"
 #include "render/camera.h"
 #include "render/environment.h"
 #include "render/instance_motion.h"
@@ -67,6 +68,10 @@ class Scene {
   const SceneTables& tables() const { return tables_; }
   /// Whether an instance is a shadow catcher: known when the instances are.
   bool has_catchers() const { return has_catchers_; }
+  /// Whether everything is taken at rest (ShutterDesc::still), and the next two say what moves.
+  bool is_still() const { return has_camera_ && camera_desc_.shutter.still; }
+  const FilmSteps& film_steps() const { return film_steps_; }
+  StepsView steps() const;
   /// An upper bound of the radiance that the world sends along any ray.
   float max_radiance() const;
 
@@ -99,6 +104,7 @@ class Scene {
   void choose_origin();
   void place(const InstanceInput& input, std::span<const Mat4d> poses, ThreadPool& pool,
              const Cancel& cancel);
+  void add_steps(std::span<const Mat4d> poses, const Vec3d& mesh_origin);
   void build_tree(ThreadPool& pool, const Cancel& cancel);
 
   bool committed_ = false;
@@ -121,10 +127,14 @@ class Scene {
   std::vector<MeshView> mesh_views_;
   std::vector<InstanceView> instances_;
   MotionTable motion_;
+  std::vector<InstanceSteps> steps_;
+  std::vector<std::uint32_t> instance2steps_;  // empty: all stand still
+  std::vector<const float*> mesh_steps_;       // of traced_meshes_; empty: not asked
   std::uint32_t invisible_count_ = 0;
   InstanceTree tree_;
   CameraTables camera_tables_;
   CameraView camera_;
+  FilmSteps film_steps_;
   SceneView view_;
 };
 

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/vector.h"
+
 namespace komorebi {
 
 /// What passes tell about an object. The ids of Cryptomattes are the bits of floats.
@@ -26,6 +28,9 @@ struct SceneTables {
   /// List l of material slots is slots[slot_begin[l]] to slots[slot_begin[l + 1] − 1]; a face with
   /// a slot beyond the last has the last.
   std::vector<std::uint32_t> slot_begin, slots;
+  /// Numbers that hold all over a material, [materials][value_count]: what shader AOVs say.
+  std::uint32_t value_count = 0;
+  std::vector<float> values;
 
   /// Whether rays from any object may be lifted, or its cosines cut.
   bool lifts_rays() const {
@@ -40,11 +45,20 @@ struct SceneTables {
   ObjectInfo object(std::uint32_t index) const {
     return index < objects.size() ? objects[index] : ObjectInfo{};
   }
-  MaterialInfo material(std::uint32_t list, std::uint32_t slot) const {
-    if (std::size_t{list} + 1 >= slot_begin.size()) return {};
+  /// Which of `materials` a face with this slot has, or kNone.
+  std::uint32_t material_index(std::uint32_t list, std::uint32_t slot) const {
+    if (std::size_t{list} + 1 >= slot_begin.size()) return kNone;
     const std::uint32_t begin = slot_begin[list], count = slot_begin[list + 1] - begin;
-    if (count == 0) return {};
-    return materials[slots[begin + (slot < count ? slot : count - 1)]];
+    if (count == 0) return kNone;
+    return slots[begin + (slot < count ? slot : count - 1)];
+  }
+  MaterialInfo material(std::uint32_t index) const {
+    return index < materials.size() ? materials[index] : MaterialInfo{};
+  }
+  float max_value() const {
+    float most = 0.0f;
+    for (const float value : values) most = std::max(most, value < 0.0f ? -value : value);
+    return most;
   }
 };
 

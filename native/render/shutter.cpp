@@ -5,7 +5,10 @@
 
 namespace komorebi {
 
-ShutterTable::ShutterTable(const ShutterDesc& desc, std::uint32_t height) {
+ShutterTable::ShutterTable(const ShutterDesc& desc, std::uint32_t height) : still_(desc.still) {
+  if (still_ && (desc.rolling || !desc.curve.empty())) {
+    throw std::invalid_argument("camera: a shutter that stays shut has no curve and does not roll");
+  }
   if (desc.rolling) {
     if (!(desc.rolling_duration >= 0.0 && desc.rolling_duration <= 1.0)) {
       throw std::invalid_argument("camera: the rolling shutter's duration must be 0 to 1");
@@ -37,6 +40,7 @@ ShutterView ShutterTable::view() const {
   view.density = density_.data();
   view.rolling_height = rolling_height_;
   view.rolling_duration = rolling_duration_;
+  view.still = still_;
   return view;
 }
 

@@ -5,6 +5,7 @@ import json
 import bpy
 import numpy as np
 import support
+from beside_cycles import close, inside, render_both, short_or_long, stacked
 
 SIZE = (96, 64)
 DATA = ("use_pass_z", "use_pass_mist", "use_pass_position", "use_pass_normal", "use_pass_uv",
@@ -76,39 +77,6 @@ def furnished():
     return scene
 
 
-def render_both(scene, folder, name="both", filter_width=1.5):
-    """Channels of Komorebi's and of Cycles' render, without the layer's name, and our metadata."""
-    layer = bpy.context.view_layer
-    scene.komorebi.method = "WORLD_LIGHT"
-    scene.komorebi.samples, scene.cycles.samples = 64, 64
-    scene.komorebi.filter_width = scene.cycles.filter_width = filter_width
-    scene.cycles.max_bounces = 0
-    for unwanted in ("use_adaptive_sampling", "use_denoising"):
-        setattr(scene.cycles, unwanted, False)
-    result = []
-    for engine in ("KOMOREBI", "CYCLES"):
-        scene.render.engine = engine
-        channels, metadata = support.render_layers(folder, f"{name}-{engine}")
-        short = {k.removeprefix(f"{layer.name}."): v for k, v in channels.items()}
-        result.append((short, metadata))
-    (ours, our_metadata), (theirs, their_metadata) = result
-    return ours, theirs, our_metadata, their_metadata
-
-
-def stacked(channels, name, ids):
-    return np.stack([channels[f"{name}.{c}"] for c in ids], axis=-1)
-
-
-def short_or_long(short, long):
-    return long if bpy.app.version >= (5, 0, 0) else short
-
-
-def inside(channels):
-    """Pixels of which all samples saw one object: there no sample's place in the pixel matters."""
-    coverage = channels["CryptoObject00.g"]
-    return coverage > 0.999
-
-
 def test_data_passes_are_cycles(folder):
     scene = furnished()
     layer = bpy.context.view_layer
@@ -122,31 +90,26 @@ def test_data_passes_are_cycles(folder):
     whole = inside(ours) & inside(theirs)
     assert whole.mean() > 0.5
 
-    def close(name, ids, tolerance, where=whole, share=0.99):
-        a, b = stacked(ours, name, ids), stacked(theirs, name, ids)
-        near = (np.abs(a - b) <= tolerance * (1.0 + np.abs(b))).all(axis=-1)
-        assert near[where].mean() >= share, (
-            f"{name}: {near[where].mean():.4f} are close, e.g. {a[where][~near[where]][:3]} "
-            f"and {b[where][~near[where]][:3]}"
-        )
+    def near(name, ids, tolerance, where=whole, share=0.99):
+        close(ours, theirs, name, ids, tolerance, where, share)
 
-    close("Depth", "Z", 1e-3)
-    close("Position", "XYZ", 1e-3)
-    close(short_or_long("IndexOB", "Object Index"), "X", 0.0)
-    close(short_or_long("IndexMA", "Material Index"), "X", 0.0)
-    close("Mist", "Z", 1e-3)
-    close("Normal", "XYZ", 2e-3)
-    close("UV", "UVA", 1e-3)
-    close("Denoising Normal", "XYZ", 2e-3)
-    close("Denoising Albedo", "RGB", 1e-3)
-    close("Denoising Depth", "Z", 1e-3)
-    close(short_or_long("DiffCol", "Diffuse Color"), "RGB", 1e-3)
-    close(short_or_long("Env", "Environment"), "RGB", 1e-3)
+    near("Depth", "Z", 1e-3)
+    near("Position", "XYZ", 1e-3)
+    near(short_or_long("IndexOB", "Object Index"), "X", 0.0)
+    near(short_or_long("IndexMA", "Material Index"), "X", 0.0)
+    near("Mist", "Z", 1e-3)
+    near("Normal", "XYZ", 2e-3)
+    near("UV", "UVA", 1e-3)
+    near("Denoising Normal", "XYZ", 2e-3)
+    near("Denoising Albedo", "RGB", 1e-3)
+    near("Denoising Depth", "Z", 1e-3)
+    near(short_or_long("DiffCol", "Diffuse Color"), "RGB", 1e-3)
+    near(short_or_long("Env", "Environment"), "RGB", 1e-3)
     sky = ours["Depth.Z"] > 1e9
     assert sky.any() and (theirs["Depth.Z"][sky] > 1e9).mean() > 0.99
     background = (ours["CryptoObject00.g"] == 0.0) & (theirs["CryptoObject00.g"] == 0.0)
     assert background.any()
-    close(short_or_long("Env", "Environment"), "RGB", 1e-4, where=background, share=1.0)
+    near(short_or_long("Env", "Environment"), "RGB", 1e-4, where=background, share=1.0)
 
     # Noisy: by the mean over all.
     ao = short_or_long("AO", "Ambient Occlusion")

@@ -81,6 +81,36 @@ def test_rolling_shutter_leans_what_passes() -> None:
     assert centre[0] > centre[-1] + 2  # the top is exposed first
 
 
+def vectors(scene: core.Scene, camera: dict[str, Any]) -> np.ndarray:
+    """The pass of the middle pixel under a shutter that stays shut."""
+    scene.set_camera(
+        "PERSPECTIVE", CAMERA, 0.1, 100.0, 64, 64, shutter={"still": 1}, **camera
+    )  # fmt: skip
+    scene.commit(keep_inputs=False)
+    settings = core.Settings(samples=4, light_samples=1, passes=("Combined", "Vector"))
+    return np.asarray(shapes.finish(core.Session(scene, settings)).read("Vector")[32, 32])
+
+
+def test_the_vector_pass_compares_poses_in_time() -> None:
+    positions = shapes.cube()[0]
+    step = np.array([0.5, 0, 0], np.float32)
+    pixels = 2.0 * 32 / 7 * 0.5  # the cube's face is 7 m away
+    expected = [-pixels, 0, -pixels, 0]
+    moved = vectors(cube_scene(poses(-0.5, 0, 0.5)[None]), {})
+    deformed = vectors(
+        cube_scene(step_positions=np.stack([positions - step, positions + step])), {}
+    )
+    around = {"motion": {"matrices": poses(0.5, 0, -0.5) @ np.linalg.inv(VIEW)}}
+    followed = vectors(cube_scene(), around)
+    for result in (moved, deformed, followed):
+        np.testing.assert_allclose(result, expected, atol=1e-3)
+    np.testing.assert_allclose(vectors(cube_scene(), {}), np.zeros(4))
+    # What moves is taken at rest.
+    np.testing.assert_array_equal(
+        alpha(cube_scene(poses(-1, 0, 1)[None]), {"shutter": {"still": True}}), alpha(cube_scene())
+    )
+
+
 def test_what_does_not_fit_is_refused() -> None:
     with pytest.raises(ValueError, match="middle one"):
         cube_scene(poses(0, 1, 2)[None])
@@ -90,6 +120,8 @@ def test_what_does_not_fit_is_refused() -> None:
         cube_scene(poses(0, 0, 0))
     with pytest.raises(ValueError, match="even number of times"):
         cube_scene(motion_positions=shapes.cube()[0][None])
+    with pytest.raises(ValueError, match="step_positions must have shape"):
+        cube_scene(step_positions=shapes.cube()[0][None])
     scene = cube_scene()
     still = poses(0, 0, 0) @ np.linalg.inv(VIEW)
     for camera, sentence in (
@@ -98,6 +130,8 @@ def test_what_does_not_fit_is_refused() -> None:
         ({"motion": {"matrices": still, "zoom": 1.0}}, "has no"),
         ({"shutter": {"curve": np.zeros(4, np.float32)}}, "shutter curve"),
         ({"shutter": {"rolling_duration": 2.0}}, "rolling shutter"),
+        ({"shutter": {"rolling_duration": 0.1, "still": True}}, "stays shut"),
+        ({"shutter": {"still": 1, "curve": np.ones(4, np.float32)}}, "stays shut"),
     ):
         with pytest.raises(ValueError, match=sentence):
             scene.set_camera("PERSPECTIVE", CAMERA, 0.1, 100.0, 64, 64, **camera)

@@ -15,8 +15,8 @@ from ..scene_data import CurveData
 DEFAULT_RADIUS = 0.005  # of points without the attribute, as in Cycles
 
 
-def export_curves(curves: Any, name: str, scene: Any) -> CurveData | None:
-    """The keys of evaluated Curves data; None when it has none."""
+def export_curves(curves: Any, name: str, scene: Any, uvs: bool) -> CurveData | None:
+    """The keys of evaluated Curves data, with `uvs` also those; None when it has none."""
     positions = compat.point_attribute(curves, "position", "FLOAT_VECTOR", 3)
     if positions is None or not len(positions):
         return None
@@ -31,4 +31,5 @@ def export_curves(curves: Any, name: str, scene: Any) -> CurveData | None:
         curve_offsets=compat.curve_offsets(curves),
         shape=shape,
         subdivisions=subdivisions,
+        curve_uvs=compat.curve_uvs(curves) if uvs else None,
     )

@@ -14,7 +14,7 @@ NOT_SHOWN_IN = {"EDIT", "PARTICLE_EDIT"}  # modes of the emitter
 
 
 def hair_systems(obj: Any) -> list[Any]:
-    """The particle systems of an evaluated object that render as hair strands."""
+    """The modifiers of an evaluated object whose particle systems render as hair strands."""
     if not len(obj.particle_systems) or obj.mode in NOT_SHOWN_IN:
         return []
     systems = []
@@ -23,16 +23,26 @@ def hair_systems(obj: Any) -> list[Any]:
             continue
         settings = modifier.particle_system.settings
         if settings.type == "HAIR" and settings.render_type == "PATH":
-            systems.append(modifier.particle_system)
+            systems.append(modifier)
     return systems
 
 
-def export_hair(obj: Any, name: str, scene: Any) -> CurveData | None:
-    """All strands of an emitter in its own space; None when it has none."""
-    parts = [_export_system(obj, system) for system in hair_systems(obj)]
-    parts = [part for part in parts if len(part[1])]
+def export_hair(obj: Any, name: str, scene: Any, uvs: bool) -> CurveData | None:
+    """All strands of an emitter in its own space, with `uvs` also its UVs where they grow; None
+    when it has none."""
+    parts, slots, roots = [], [], []
+    for modifier in hair_systems(obj):
+        system = modifier.particle_system
+        strands = _strands(system)
+        if not strands:
+            continue
+        parts.append(_export_system(obj, system, strands))
+        slots.append(np.full(len(strands), max(system.settings.material - 1, 0), np.int32))
+        if uvs and len(obj.data.uv_layers):
+            roots.append(_uvs(obj.data, modifier, strands))
     if not parts:
         return None
+    materials = np.concatenate(slots)
     counts = np.concatenate([part[2] for part in parts])
     offsets = np.zeros(len(counts) + 1, np.int32)
     np.cumsum(counts, out=offsets[1:])
@@ -44,16 +54,36 @@ def export_hair(obj: Any, name: str, scene: Any) -> CurveData | None:
         curve_offsets=offsets,
         shape=shape,
         subdivisions=subdivisions,
+        curve_materials=materials if materials.any() else None,
+        curve_uvs=np.concatenate(roots) if roots else None,
     )
 
 
-def _export_system(obj: Any, system: Any) -> tuple[FloatArray, FloatArray, IntArray]:
+def _strands(system: Any) -> range:
+    """Which particles are strands: where there are children, parents only lead them."""
+    parents, children = len(system.particles), len(system.child_particles)
+    first = parents if system.settings.child_type != "NONE" and children else 0
+    return range(first, parents + children)
+
+
+def _uvs(mesh: Any, modifier: Any, strands: range) -> FloatArray:
+    """The emitter's UVs where each strand grows [strands, 2]."""
+    layer = next((i for i, uv in enumerate(mesh.uv_layers) if uv.active_render), 0)
+    system = modifier.particle_system
+    particles, uv_on_emitter = system.particles, system.uv_on_emitter
+    numbers = array("f")
+    for strand in strands:
+        # Of a child its number is enough.
+        particle = particles[strand if strand < len(particles) else 0]
+        numbers.extend(uv_on_emitter(modifier, particle=particle, particle_no=strand, uv_no=layer))
+    return np.frombuffer(numbers, np.float32).reshape(-1, 2).copy()
+
+
+def _export_system(
+    obj: Any, system: Any, strands: range
+) -> tuple[FloatArray, FloatArray, IntArray]:
     """Positions [keys, 3], radii [keys] and how many keys each strand has."""
     settings = system.settings
-    parents, children = len(system.particles), len(system.child_particles)
-    # Where there are children, parents only lead them.
-    first = parents if settings.child_type != "NONE" and children else 0
-    strands = range(first, parents + children)
     keys = (1 << settings.render_step) + 1
     if settings.kink == "SPIRAL":
         keys += settings.kink_extra_steps

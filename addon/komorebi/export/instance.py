@@ -68,7 +68,9 @@ class _Exporter:
         self._motion = motion
         self._visibility = Visibility(depsgraph)
         self._materials = (
-            MaterialExporter(depsgraph.view_layer, data.materials) if wanted.materials else None
+            MaterialExporter(engine, depsgraph.view_layer, data.materials)
+            if wanted.materials
+            else None
         )
         self.groups: dict[int, _Group] = {}
         self.ignored: Counter[str] = Counter()

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..passes import value_columns
 from ..scene_data import MaterialData, Materials
+from .aovs import AovReader
 from .names import name_of
 
 # What Cycles calls the surface of a face without material, and so what a Cryptomatte has.
@@ -14,9 +16,10 @@ NO_MATERIAL = "default_surface"
 class MaterialExporter:
     """Collects the materials of one view layer; its override takes the place of all."""
 
-    def __init__(self, view_layer: Any, materials: Materials) -> None:
+    def __init__(self, engine: Any, view_layer: Any, materials: Materials) -> None:
         self._override = view_layer.material_override
         self._materials = materials
+        self._aovs = AovReader(engine, value_columns(view_layer))
         self._index: dict[int, int] = {}  # of materials by address; 0: no material
         self._slots: dict[tuple[int, ...], int] = {}
         self._known: dict[tuple[int, int], int] = {}
@@ -50,8 +53,9 @@ class MaterialExporter:
         index = self._index.get(pointer)
         if index is None:
             index = self._index[pointer] = len(self._materials.materials)
+            values = self._aovs.values_of(material)
             self._materials.materials.append(
-                MaterialData(NO_MATERIAL, 0) if material is None
-                else MaterialData(name_of(material), material.pass_index)
+                MaterialData(NO_MATERIAL, 0, values) if material is None
+                else MaterialData(name_of(material), material.pass_index, values)
             )  # fmt: skip
         return index

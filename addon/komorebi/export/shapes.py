@@ -57,7 +57,7 @@ class ShapeExporter:
         index = self._by_emitter.get(key)
         if index is None:
             self._deforming.watch_hair(obj)
-            hair = export_hair(obj, name_of(obj), self._scene)
+            hair = export_hair(obj, name_of(obj), self._scene, self._wanted.uvs)
             index = self._by_emitter[key] = self._add(self._with_key(hair))
         return index
 
@@ -81,7 +81,8 @@ class ShapeExporter:
 
     def _read(self, obj: Any) -> AnyMesh | None:
         if obj.type == "CURVES":
-            return self._watched(obj, export_curves(obj.data, name_of(obj), self._scene))
+            curves = export_curves(obj.data, name_of(obj), self._scene, self._wanted.uvs)
+            return self._watched(obj, curves)
         if obj.type == "POINTCLOUD":
             return self._watched(obj, export_points(obj.data, name_of(obj)))
         with compat.mesh_of(obj) as mesh:

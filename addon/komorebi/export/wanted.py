@@ -16,5 +16,6 @@ class Wanted:
     @staticmethod
     def by(sources: Collection[str]) -> Wanted:
         """For the core's passes that are kept."""
-        materials = any(s == "Material Index" or s.startswith("CryptoMaterial") for s in sources)
+        of_materials = ("Material Index", "Material Value", "CryptoMaterial")
+        materials = any(s.startswith(of_materials) for s in sources)
         return Wanted(uvs="UV" in sources, materials=materials)

@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "core/panorama_point.h"
 #include "render/camera.h"
 #include "support/camera_poses.h"
 
@@ -159,6 +160,33 @@ TEST(Panorama, RaysPassThroughTheirPixel) {
                        kind != PanoramaKind::kCentralCylindrical;
     EXPECT_EQ(none > 50, round);
   }
+}
+
+TEST(Panorama, DirectionsLeadBackToTheFilm) {
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> coordinate(-1.0, 1.0);
+  for (const PanoramaKind kind : kKinds) {
+    const PanoramaDesc desc = camera_desc(kind).panorama;
+    const PanoramaView view = make_panorama(desc, kWidth, kHeight);
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3d d(coordinate(engine), coordinate(engine), coordinate(engine));
+      const bool round = kind != PanoramaKind::kEquirectangular &&
+                         kind != PanoramaKind::kEquiangularCubeFace &&
+                         kind != PanoramaKind::kCentralCylindrical;
+      const Vec3d unit = glm::normalize(d);
+      if (round && unit.z > 0.98) continue;  // the rim, where all directions meet
+      const Film at = project(desc, unit);
+      const glm::dvec2 back = panorama_point(view, 3.0 * d);
+      const double tolerance = 1e-9 * (1.0 + std::abs(at.x) + std::abs(at.y));
+      ASSERT_NEAR(back.x, at.x - 0.5 * kWidth, tolerance) << "kind " << static_cast<int>(kind);
+      ASSERT_NEAR(back.y, at.y - 0.5 * kHeight, tolerance) << "kind " << static_cast<int>(kind);
+    }
+  }
+  // What leads nowhere is said by a number that is not finite.
+  PanoramaDesc none = camera_desc(PanoramaKind::kFisheyePolynomial).panorama;
+  std::fill_n(none.polynomial, 5, 0.0);
+  EXPECT_FALSE(
+      std::isfinite(panorama_point(make_panorama(none, kWidth, kHeight), Vec3d(0.1, 0.2, -1.0)).x));
 }
 
 TEST(Panorama, DepthIsDistance) {

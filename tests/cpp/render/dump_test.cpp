@@ -138,6 +138,32 @@ TEST_F(Dump, KeepsMotion) {
   EXPECT_TRUE(original->view().moves);
 }
 
+TEST_F(Dump, KeepsWhatTheVectorPassCompares) {
+  const auto original = scene();
+  CameraDesc camera = original->camera_desc();
+  camera.shutter.still = true;
+  original->set_camera(camera);
+  const Polygons ball = sphere(8, {4000, 0, 1}, 1.0, true);
+  std::vector<float> steps(ball.vtx2xyz);
+  steps.insert(steps.end(), ball.vtx2xyz.begin(), ball.vtx2xyz.end());
+  for (std::size_t i = 0; i < steps.size(); i += 2) steps[i] += 0.25f;
+  MeshInput input = ball.input("bending");
+  input.step_positions = steps;
+  const InstanceInput bending{
+      original->add_mesh(Mesh::build(input, Builder::kLinear, shared_pool(), Cancel()))};
+  original->add_instances({&bending, 1}, "bending");
+  Settings with_vector = settings();
+  with_vector.passes = {"Combined", "Vector"};
+  write_dump(path_, *original, with_vector);
+  const std::string first = bytes();
+  const DumpedRender read = read_dump(path_, shared_pool(), Cancel());
+  write_dump(path_, *read.scene, read.settings);
+  EXPECT_EQ(bytes(), first);
+  const auto vectors = render(committed(original), with_vector, "Vector");
+  EXPECT_EQ(render(committed(read.scene), with_vector, "Vector"), vectors);
+  EXPECT_TRUE(std::ranges::any_of(vectors, [](float x) { return x != 0.0f; }));
+}
+
 TEST_F(Dump, CutShortAnywhereIsRefused) {
   write_dump(path_, *scene(), settings());
   const std::string whole = bytes();

@@ -55,7 +55,7 @@ Settings small_settings(Method method) {
 }
 
 /// Things that every pass has something to tell of: a shadow catcher, a hole, objects without
-/// shadow or not to be seen, materials and UVs.
+/// shadow or not to be seen, materials and UVs, and a camera that will be elsewhere.
 std::shared_ptr<Scene> telling_scene() {
   Polygons ground = quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0});
   const Polygons ball = sphere(7, Vec3d(0), 1.0, true), cube = box(Vec3d(-0.5), Vec3d(0.5));
@@ -93,9 +93,15 @@ std::shared_ptr<Scene> telling_scene() {
   tables.materials = {{5.0f, 301}, {6.0f, 302}};
   tables.slot_begin = {0, 1, 3};
   tables.slots = {0, 1, 0};
+  tables.value_count = 4;
+  tables.values = {0.0f, 0.25f, 2.0f, 1.0f, 9.0f, -300.0f, 0.1f, 1.0f};
   scene->set_tables(std::move(tables));
   scene->set_world_environment(gradient_map(), 0.7, Mat3d(1.0));
-  scene->set_camera(camera_at({5, -4, 3}, {0, 0, 0.8}, 150, 90));
+  CameraDesc camera = camera_at({5, -4, 3}, {0, 0, 0.8}, 150, 90);
+  const Mat4d rest = glm::inverse(glm::lookAt(Vec3d(5, -4, 3), Vec3d(0, 0, 0.8), Vec3d(0, 0, 1)));
+  camera.motion.poses = {at(0.1, 0, 0) * rest, rest, at(0, 0.3, 0.1) * rest};
+  camera.shutter.still = true;
+  scene->set_camera(camera);
   return committed(scene);
 }
 
@@ -151,7 +157,7 @@ std::shared_ptr<Scene> moving_scene(Builder builder = Builder::kLinear) {
 
 std::vector<std::string> every_pass() {
   std::vector<std::string> names = {"CryptoObject00", "CryptoMaterial00", "CryptoAsset00",
-                                    "CryptoObject01"};
+                                    "CryptoObject01", "Material Value 1 3"};
   for (const PassDesc& pass : known_passes()) names.emplace_back(pass.name);
   return names;
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "support/made_curves.h"
 #include "support/scenes.h"
 
 namespace komorebi::testing {
@@ -193,6 +194,106 @@ TEST(Passes, PlacesAreBlendersOwn) {
   EXPECT_EQ(instance_index[middle], 1.0f);
 }
 
+TEST(Passes, MaterialValuesAreMeansOverAllSamples) {
+  // The left half of the picture has one material, the right half another, the top no surface.
+  auto scene = std::make_shared<Scene>();
+  const auto half = [&](double x, std::uint32_t slots) {
+    const auto mesh = scene->add_mesh(quad({x, -1, 0}, {1, 0, 0}, {0, 1.5, 0}).mesh());
+    const InstanceInput instance{mesh, Mat4d(1.0), 0, kMaskAll, 0, slots};
+    scene->add_instances({&instance, 1}, "half");
+  };
+  half(-1, 0);
+  half(0, 1);
+  SceneTables tables;
+  tables.materials = {{0.0f, 0}, {0.0f, 0}};
+  tables.slot_begin = {0, 1, 2};
+  tables.slots = {1, 0};
+  tables.value_count = 5;
+  tables.values = {1e6f, 0.25f, -0.5f, 0.125f, 1.0f, 3.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  scene->set_tables(tables);
+  CameraDesc camera = probe_at(Vec3d(0.0), Vec3d(0, 0, 1), 1.0);
+  scene->set_camera(camera);
+  committed(scene);
+  Settings settings = with_passes({"Combined", "Material Value 0 1", "Material Value 1 4"});
+  settings.pixel_filter = PixelFilter::kBox;
+  settings.samples = 16;
+  const auto number = render(scene, settings, "Material Value 0 1");
+  const auto color = render(scene, settings, "Material Value 1 4");
+  for (std::size_t y = 0; y < 16; ++y) {
+    for (std::size_t x = 0; x < 16; ++x) {
+      const std::size_t i = 16 * y + x;
+      const bool seen = y < 12, right = x >= 8;
+      EXPECT_FLOAT_EQ(number[i], !seen ? 0.0f : right ? 1e6f : 3.0f);
+      const float expected[] = {0.25f, -0.5f, 0.125f, 1.0f};
+      for (std::size_t c = 0; c < 4; ++c) {
+        EXPECT_FLOAT_EQ(color[4 * i + c], seen && right ? expected[c] : 0.0f);
+      }
+    }
+  }
+  settings.passes = {"Material Value 2 4"};
+  EXPECT_THROW(Session(scene, settings), std::invalid_argument);
+  for (const char* bad : {"Material Value", "Material Value 0", "Material Value 0 5",
+                          "Material Value 0 0", "Material Value -1 1", "Material Value 0 1 "}) {
+    EXPECT_THROW(find_pass(bad), std::invalid_argument) << bad;
+  }
+}
+
+TEST(Passes, EachCurveHasAMaterialAndAPlaceWhereItGrows) {
+  // Bars side by side, the second one of two segments, between curves that are not drawn.
+  Curves bars;
+  bars.shape = CurveShape::kThick;
+  const auto bar = [&](double x, int keys) {
+    for (int k = 0; k < keys; ++k) bars.key({x, 2.0 * k - 2.0, 0}, 0.45);
+    bars.end_curve();
+  };
+  bar(-0.5, 3);
+  bar(0.0, 1);
+  bar(0.5, 3);
+  const std::vector<std::int32_t> slots = {0, 5, 1};
+  const std::vector<float> uvs = {0.25f, 0.5f, 9.0f, 9.0f, NAN, 0.75f};
+  CurvesInput input = bars.input("bars");
+  input.curve2material = slots;
+  input.curve2uv = uvs;
+  const auto mesh = Mesh::build(input, Builder::kLinear, shared_pool(), Cancel());
+  const std::shared_ptr<const Mesh> meshes[] = {
+      mesh, mesh->rebuilt(Builder::kSah, shared_pool(), Cancel()),
+      mesh->flattened(glm::scale(Mat4d(1.0), Vec3d(1, 1, 0.5)), shared_pool(), Cancel())};
+  for (const auto& built : meshes) {
+    auto scene = std::make_shared<Scene>();
+    const InstanceInput instance{scene->add_mesh(built)};
+    scene->add_instances({&instance, 1}, "bars");
+    SceneTables tables;
+    tables.materials = {{7.0f, 0}, {8.0f, 0}};
+    tables.slot_begin = {0, 2};
+    tables.slots = {0, 1};
+    scene->set_tables(tables);
+    scene->set_camera(probe_at(Vec3d(0.0), Vec3d(0, 0, 1), 0.9));
+    committed(scene);
+    Settings settings = with_passes({"Combined", "UV", "Material Index"});
+    settings.samples = 1;
+    settings.pixel_filter = PixelFilter::kBox;
+    const auto index = render(scene, settings, "Material Index");
+    const auto uv = render(scene, settings, "UV");
+    for (const std::size_t y : {2u, 13u}) {
+      for (const std::size_t x : {4u, 12u}) {
+        const std::size_t i = 16 * y + x;
+        EXPECT_EQ(index[i], x == 4 ? 7.0f : 8.0f);
+        EXPECT_EQ(uv[3 * i], x == 4 ? 0.25f : 0.0f);
+        EXPECT_EQ(uv[3 * i + 1], x == 4 ? 0.5f : 0.75f);
+        EXPECT_EQ(uv[3 * i + 2], 1.0f);
+      }
+    }
+  }
+  const std::vector<std::int32_t> negative = {0, -1, 0};
+  input.curve2material = negative;
+  EXPECT_THROW(Mesh::build(input, Builder::kLinear, shared_pool(), Cancel()),
+               std::invalid_argument);
+  input.curve2material = {};
+  input.curve2uv = std::span(uvs).first(4);
+  EXPECT_THROW(Mesh::build(input, Builder::kLinear, shared_pool(), Cancel()),
+               std::invalid_argument);
+}
+
 TEST(Passes, TablesAreChecked) {
   Scene scene;
   SceneTables bad;
@@ -204,6 +305,11 @@ TEST(Passes, TablesAreChecked) {
   EXPECT_THROW(scene.set_tables(bad), std::invalid_argument);
   bad.slots = {0, 0};
   EXPECT_NO_THROW(scene.set_tables(bad));
+  bad.value_count = 2;
+  bad.values = {1.0f};
+  EXPECT_THROW(scene.set_tables(bad), std::invalid_argument);
+  bad.values = {1.0f, NAN};
+  EXPECT_THROW(scene.set_tables(bad), std::invalid_argument);
 }
 
 }  // namespace
