@@ -99,6 +99,7 @@ class Scene {
   void choose_origin();
   void place(const InstanceInput& input, std::span<const Mat4d> poses, ThreadPool& pool,
              const Cancel& cancel);
+  void view_meshes();
   void build_tree(ThreadPool& pool, const Cancel& cancel);
 
   bool committed_ = false;
