@@ -6,7 +6,7 @@ the files.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import bpy
@@ -112,6 +112,23 @@ def set_world(colour: Point = (1.0, 1.0, 1.0), strength: float = 1.0) -> bpy.typ
     background.inputs["Strength"].default_value = strength
     bpy.context.scene.world = world
     return world
+
+
+def set_map(
+    name: str, width: int, height: int, radiance: Callable[[float, float], Sequence[float]]
+) -> None:
+    """A world of a packed map; `radiance` gives the colour at column and row, 0 to 1."""
+    image = bpy.data.images.new(name, width, height, float_buffer=True)
+    pixels: list[float] = []
+    for row in range(height):
+        for column in range(width):
+            pixels += [*radiance((column + 0.5) / width, (row + 0.5) / height), 1.0]
+    image.pixels.foreach_set(pixels)
+    image.pack()
+    tree = set_world().node_tree
+    texture = tree.nodes.new("ShaderNodeTexEnvironment")
+    texture.image = image
+    tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
 
 
 def save(name: str) -> Path:

@@ -15,6 +15,7 @@ from common import (
     add_sphere,
     empty_scene,
     link,
+    set_map,
     set_world,
 )
 from mathutils import Matrix, Vector
@@ -163,23 +164,55 @@ def shadow_terminator() -> None:
         ball.data.polygons.foreach_set("use_smooth", [True] * len(ball.data.polygons))
         ball.cycles.shadow_terminator_geometry_offset = geometry
         ball.cycles.shadow_terminator_offset = shading
-    world, width, height = set_world(), 64, 32
-    image = bpy.data.images.new("Low sun", width, height, float_buffer=True)
-    sky = [0.2, 0.3, 0.4, 1.0]
-    image.pixels.foreach_set(
+    sun = (40.5 / 64, 19.5 / 32)
+    set_map("Low sun", 64, 32, lambda *at: (150, 130, 100) if at == sun else (0.2, 0.3, 0.4))
+    add_camera((0.0, -6.0, 2.4), (0.0, 0.0, 0.8), lens=36.0)
+
+
+def coarse_ball(name: str, place: Matrix) -> bpy.types.Object:
+    """A ball of few smooth faces, so that it shows where normals are interpolated."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=6, ring_count=4, radius=0.6)
+    ball = bpy.context.object
+    ball.name, ball.matrix_world = name, place
+    ball.data.polygons.foreach_set("use_smooth", [True] * len(ball.data.polygons))
+    return ball
+
+
+def stretched() -> None:
+    """Coarse smooth balls, stretched, mirrored and sheared; two that share their mesh, one that
+    owns its corner normals, and one that is partly flat; the sky is brighter on one side."""
+    empty_scene(320, 160)
+    tilt = Matrix.Rotation(0.6, 4, "Y") @ Matrix.Rotation(0.4, 4, "X")
+    shear = Matrix(((1.0, 0.9, 0.2, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.4, 1.0, 0.0), (0, 0, 0, 1)))
+
+    def size(x: float, y: float, z: float) -> Matrix:
+        return tilt @ Matrix.Diagonal((x, y, z, 1.0))
+
+    kinds = (
+        ("Round", tilt), ("Stretched", size(1.0, 0.4, 1.4)), ("Mirrored", size(-1.3, 0.5, 1.0)),
+        ("Sheared", shear), ("Hand-set", size(1.2, 1.4, 0.4)), ("Partly flat", size(1.4, 0.4, 1.0)),
+        ("Shared", size(1.0, 0.4, 1.4)), ("Shared too", size(0.6, 1.4, 1.0)),
+    )  # fmt: skip
+    balls = {}
+    for i, (name, turned) in enumerate(kinds):
+        at = Matrix.Translation((1.5 * (i % 4 - 1.5), 0.0, 0.8 - 1.6 * (i // 4)))
+        balls[name] = coarse_ball(name, at @ turned)
+    balls["Shared too"].data = balls["Shared"].data
+    mesh = balls["Hand-set"].data
+    mesh.use_auto_smooth, mesh.auto_smooth_angle = True, math.pi
+    up = Vector((0.0, 0.4, 0.3))
+    mesh.normals_split_custom_set(
         [
-            value
-            for row in range(height)
-            for column in range(width)
-            for value in ([150.0, 130.0, 100.0, 1.0] if (row, column) == (19, 40) else sky)
+            (mesh.vertices[loop.vertex_index].co.normalized() + up).normalized()
+            for loop in mesh.loops
         ]
     )
-    image.pack()
-    nodes, links = world.node_tree.nodes, world.node_tree.links
-    texture = nodes.new("ShaderNodeTexEnvironment")
-    texture.image = image
-    links.new(texture.outputs["Color"], nodes["Background"].inputs["Color"])
-    add_camera((0.0, -6.0, 2.4), (0.0, 0.0, 0.8), lens=36.0)
+    for face in balls["Partly flat"].data.polygons:
+        face.use_smooth = face.index % 3 != 0
+    for ball in balls.values():
+        ball.cycles.shadow_terminator_geometry_offset = 0.0
+    set_map("Side", 64, 32, lambda x, y: [0.02 + 4.0 * x**6 + y**4] * 3)
+    add_camera((0.0, -9.0, 1.0), (0.0, 0.0, 0.0), lens=54.0)
 
 
 SCENES: dict[str, Callable[[], None]] = {
@@ -193,5 +226,6 @@ SCENES: dict[str, Callable[[], None]] = {
         huge,
         far_away,
         shadow_terminator,
+        stretched,
     )
 }

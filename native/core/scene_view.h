@@ -58,7 +58,8 @@ struct TimeTree {
 /// Local space is Blender's object space moved by the mesh's own origin (render/mesh.h).
 struct MeshView {
   PrimitiveKind kind = PrimitiveKind::kTriangle;
-  std::uint32_t opaque = 1;  ///< 1: no leaf filter is ever needed
+  std::uint32_t opaque = 1;     ///< 1: no leaf filter is ever needed
+  std::uint32_t stretched = 0;  ///< 1: by its only instance, which stands still (world_normals)
   std::uint32_t triangle_count = 0;
   std::uint32_t vertex_count = 0;
   std::uint32_t position_sets = 1;  ///< 1 = still; n sets of vertex_count positions at even times

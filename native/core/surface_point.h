@@ -48,9 +48,30 @@ inline Corners triangle_corners(const MeshView& mesh, std::size_t triangle, floa
   return at;
 }
 
-}  // namespace detail
-
-namespace detail {
+/// The normals of a triangle's corners in world space, each of length 1; a null one stays null.
+/// Cycles moves a mesh that is used once to world space, normals and all, before it interpolates
+/// them (apply_static_transforms in its scene/object.cpp), and interpolates those of one that is
+/// shared in its own space. Where an object is stretched, these are different surfaces.
+/// @param normal_transform  the inverse transpose of world from local
+inline Corners world_normals(const MeshView& mesh, std::size_t triangle, float time,
+                             const Mat3& normal_transform) {
+  const std::uint32_t* three = mesh.tri2normal + 3 * triangle;
+  const auto of_set = [&](std::size_t set) {
+    Corners at;
+    for (int k = 0; k < 3; ++k) {
+      const float* n = mesh.normals + 3 * (set * mesh.normal_count + three[k]);
+      at.corner[k] = unit_or(normal_transform * Vec3(n[0], n[1], n[2]), Vec3(0.0f));
+    }
+    return at;
+  };
+  if (mesh.normal_sets == 1) return of_set(0);
+  const SetPlace place = set_place(mesh.normal_sets, time);
+  const Corners from = of_set(place.set), to = of_set(std::size_t{place.set} + 1);
+  const float f = place.fraction, s = 1.0f - f;
+  Corners at;
+  for (int k = 0; k < 3; ++k) at.corner[k] = s * from.corner[k] + f * to.corner[k];
+  return at;
+}
 
 /// The barycentrics at which a ray meets the plane of a triangle (a, a + ab, a + ac), in doubles
 /// (Möller and Trumbore 1997), moved onto the triangle; false if the ray is parallel to the plane.
@@ -175,11 +196,13 @@ inline SurfacePoint surface_point(const SceneView& scene, const Hit& hit, const 
   point.geometric_normal = unit_or(normal_transform * local_cross, -ray.direction);
   point.normal = point.geometric_normal;
   if (mesh.normals && (!mesh.tri2smooth || mesh.tri2smooth[tri])) {
-    const Corners normals = corner_normals(mesh, tri, ray.time);
+    const Corners normals = mesh.stretched ? world_normals(mesh, tri, ray.time, normal_transform)
+                                           : corner_normals(mesh, tri, ray.time);
     const float w = 1.0f - hit.u - hit.v;  // normals vary slowly: the tracer's own will do
     const Vec3 smooth =
         w * normals.corner[0] + hit.u * normals.corner[1] + hit.v * normals.corner[2];
-    point.normal = unit_or(normal_transform * smooth, point.geometric_normal);
+    point.normal =
+        unit_or(mesh.stretched ? smooth : normal_transform * smooth, point.geometric_normal);
   }
   if (glm::dot(point.geometric_normal, ray.direction) > 0.0f) {
     point.geometric_normal = -point.geometric_normal;

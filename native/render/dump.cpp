@@ -237,6 +237,33 @@ void get_instances(const ArrayFile& file, Scene& scene) {
   add_instances(file, instances, scene);
 }
 
+/// Of the tables, what changes the picture.
+void put_terminators(ArrayFile& file, const SceneTables& tables) {
+  if (!tables.lifts_rays() && !tables.cuts_cosines()) return;
+  std::vector<float> pairs;
+  for (const ObjectInfo& object : tables.objects) {
+    pairs.insert(pairs.end(), {object.terminator_cutoff, object.terminator_frequency});
+  }
+  put_rows<float>(file, "object/terminator", pairs, 2);
+}
+
+void get_terminators(const ArrayFile& file, Scene& scene) {
+  if (!file.has("object/terminator")) return;
+  const auto pairs = file.get<float>("object/terminator");
+  SceneTables tables;
+  for (std::size_t i = 0; i + 1 < pairs.size(); i += 2) {
+    const float cutoff = pairs[i], frequency = pairs[i + 1];
+    if (!(cutoff >= 0.0f && cutoff <= 1.0f && frequency >= 1.0f && frequency <= 2.0f)) {
+      throw std::runtime_error("the scene's array \"object/terminator\" has values out of range");
+    }
+    ObjectInfo object;
+    object.terminator_cutoff = cutoff;
+    object.terminator_frequency = frequency;
+    tables.objects.push_back(object);
+  }
+  scene.set_tables(std::move(tables));
+}
+
 void put_world(ArrayFile& file, const Scene& scene) {
   const auto& environment = scene.world_environment();
   if (!environment) {
@@ -278,6 +305,7 @@ void write_dump(const std::string& path, const Scene& scene, const Settings& set
   }
   put_instances(file, scene.inputs());
   put_poses(file, scene);
+  put_terminators(file, scene.tables());
   put_world(file, scene);
   put_camera(file, scene.camera_desc());
   put_settings(file, settings);
@@ -301,6 +329,7 @@ DumpedRender read_dump(const std::string& path, ThreadPool& pool, const Cancel& 
     dumped.scene->add_mesh(get_mesh(file, key, expected_rays, pool, cancel));
   }
   get_instances(file, *dumped.scene);
+  get_terminators(file, *dumped.scene);
   get_world(file, *dumped.scene);
   return dumped;
 }

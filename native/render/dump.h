@@ -22,6 +22,7 @@ struct DumpedRender {
 ///     mesh/N/name, origin, points  (points)
 ///     instance/mesh, world_from_object, object_index, mask, flags
 ///     instance/motion/instance*, pose_count*, poses*  of those that move (add_moving_instances)
+///     object/terminator*  cutoff and frequency of ObjectInfo, by object_index
 ///     world/color  or  world/texels, world/strength, world/texture_from_world
 ///     camera/kind, clip_from_world or world_from_camera, clip_start, clip_end, resolution,
 ///         lens/…*, panorama/…*, stereo/…*   by the names in camera_fields.h

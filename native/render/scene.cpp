@@ -31,6 +31,19 @@ bool invertible(const Mat3d& m, Mat3d& inverse) {
   return condition <= kMaxCondition;  // false for the NaN of a singular matrix
 }
 
+/// Turned, mirrored and scaled alike along all axes, but for roundings.
+bool keeps_shapes(const Mat3d& m) {
+  const Mat3d gram = glm::transpose(m) * m;
+  const double mean = (gram[0][0] + gram[1][1] + gram[2][2]) / 3.0;
+  double most = 0.0;
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < 3; ++r) {
+      most = std::max(most, std::abs(gram[c][r] - (c == r ? mean : 0.0)));
+    }
+  }
+  return most <= 1e-5 * mean;
+}
+
 void check_world(const Vec3& radiance, const char* what) {
   for (int c = 0; c < 3; ++c) {
     if (!(radiance[c] >= 0.0f && radiance[c] <= 1e30f)) {
@@ -273,6 +286,20 @@ void Scene::build_tree(ThreadPool& pool, const Cancel& cancel) {
   std::vector<Aabb>().swap(motion_.group_boxes);
 }
 
+void Scene::view_meshes() {
+  for (const auto& mesh : traced_meshes_) mesh_views_.push_back(mesh->view());
+  // What no ray sees does not count, as in Cycles.
+  std::vector<std::uint8_t> users(mesh_views_.size(), 0);
+  for (const InstanceView& instance : instances_) {
+    std::uint8_t& count = users[instance.mesh];
+    if (instance.mask != 0 && count < 2) ++count;
+  }
+  for (const InstanceView& instance : instances_) {
+    if (instance.mask == 0 || instance.motion != kNoMotion || users[instance.mesh] != 1) continue;
+    mesh_views_[instance.mesh].stretched = !keeps_shapes(Mat3d(instance.world_from_local));
+  }
+}
+
 void Scene::commit(ThreadPool& pool, const Cancel& cancel, bool keep_inputs) {
   require_open();
   committed_ = true;
@@ -296,7 +323,7 @@ void Scene::commit(ThreadPool& pool, const Cancel& cancel, bool keep_inputs) {
     std::vector<Mat4d>().swap(poses_);
     inputs_gone_ = true;
   }
-  for (const auto& mesh : traced_meshes_) mesh_views_.push_back(mesh->view());
+  view_meshes();
   build_tree(pool, cancel);
   if (has_camera_) {
     camera_ = make_camera(camera_desc_, origin_);

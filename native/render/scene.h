@@ -105,6 +105,7 @@ class Scene {
   void place(const InstanceInput& input, std::span<const Mat4d> poses, ThreadPool& pool,
              const Cancel& cancel);
   void add_steps(std::span<const Mat4d> poses, const Vec3d& mesh_origin);
+  void view_meshes();
   void build_tree(ThreadPool& pool, const Cancel& cancel);
 
   bool committed_ = false;

@@ -22,6 +22,7 @@ struct HitLanes {
   };
   alignas(64) float fields[kFields][kLanes];
   alignas(64) std::uint32_t smooth[kLanes];
+  alignas(64) std::uint32_t stretched[kLanes];
 
   HWY_INLINE void put(int field, const float* values, std::size_t count, std::size_t lane) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -40,7 +41,7 @@ struct HitLanes {
     }
   }
 
-  /// False for a curve or sphere, of which nothing is fetched.
+  /// False for a curve, a sphere or a mesh that is stretched and deforms: nothing is fetched.
   HWY_INLINE bool fetch(const RenderContext& context, const SurfaceBlock& block, std::uint32_t path,
                         std::size_t lane) {
     const Hit& hit = block.hits[path];
@@ -48,9 +49,9 @@ struct HitLanes {
     const InstanceView& instance =
         instance_at(context.scene, hit.instance, block.rays.time[path], room);
     const MeshView& mesh = context.scene.meshes[instance.mesh];
-    if (is_round(mesh.kind)) return false;
-    const std::size_t first = 3 * std::size_t{hit.primitive};
     const bool moves = mesh.kind == PrimitiveKind::kMovingTriangle;
+    if (is_round(mesh.kind) || (moves && mesh.stretched)) return false;
+    const std::size_t first = 3 * std::size_t{hit.primitive};
     if (HWY_UNLIKELY(moves)) put_moving(mesh, hit.primitive, block.rays.time[path], lane);
     const bool is_smooth = mesh.normals && (!mesh.tri2smooth || mesh.tri2smooth[hit.primitive]);
     for (std::size_t k = 0; k < 3 && !moves; ++k) {
@@ -61,6 +62,7 @@ struct HitLanes {
       }
     }
     smooth[lane] = is_smooth;
+    stretched[lane] = is_smooth ? mesh.stretched : 0;
     put(kLocalFromWorld, entries(instance.local_from_world), 9, lane);
     put(kWorldFromLocal, entries(instance.world_from_local), 9, lane);
     put(kPosition, &instance.position.x, 3, lane);
@@ -112,6 +114,29 @@ HWY_INLINE Double edge_margin_lanes(const Vec3dLanes& ab, const Vec3dLanes& ac, 
   const Vec3dLanes normal = cross(ab, ac);
   const Double margin = f64(2.0) * error * longest / hn::Sqrt(dot(normal, normal));
   return hn::IfThenElse(hn::Lt(margin, f64(0.125)), margin, f64(0.125));
+}
+
+HWY_INLINE hn::Mask<TagF> nonzero(const std::uint32_t (&words)[HitLanes::kLanes]) {
+  return hn::RebindMask(TagF(), hn::Gt(hn::Load(TagU(), words), hn::Zero(TagU())));
+}
+
+/// The interpolated normal in world space, of any length.
+HWY_INLINE Vec3Lanes blended_normal(const HitLanes& hit, const Mat3Lanes& local_from_world,
+                                    Float hit_u, Float hit_v) {
+  const Float w = (f32(1.0f) - hit_u) - hit_v;
+  const auto blend = [&](const Vec3Lanes& a, const Vec3Lanes& b, const Vec3Lanes& c) HWY_ATTR {
+    return sum(sum(scaled(w, a), scaled(hit_u, b)), scaled(hit_v, c));
+  };
+  const Vec3Lanes a = hit.vector(HitLanes::kNormals), b = hit.vector(HitLanes::kNormals + 3),
+                  c = hit.vector(HitLanes::kNormals + 6);
+  const Vec3Lanes normal = transposed_times(local_from_world, blend(a, b, c));
+  const auto stretched = nonzero(hit.stretched);
+  if (hn::AllFalse(TagF(), stretched)) return normal;
+  const auto turned = [&](const Vec3Lanes& n) HWY_ATTR {
+    const Float zero = f32(0.0f);
+    return unit_or(transposed_times(local_from_world, n), {zero, zero, zero});
+  };
+  return if_then_else(stretched, blend(turned(a), turned(b), turned(c)), normal);
 }
 
 HWY_INLINE void store(const Vec3Lanes& v, float* const (&columns)[3], std::size_t i) {
@@ -176,14 +201,8 @@ HWY_INLINE void finish_points(const RenderContext& context, const HitLanes& hit,
       unit_or(cross(unit_or(along_ab, along_ab), unit_or(along_ac, along_ac)), {zero, zero, unit});
   Vec3Lanes geometric =
       unit_or(transposed_times(local_from_world, local_cross), negated(direction));
-  const auto smooth =
-      hn::RebindMask(TagF(), hn::Gt(hn::Load(TagU(), hit.smooth), hn::Zero(TagU())));
-  const Float w = (unit - hit_u) - hit_v;
-  const Vec3Lanes blend = sum(sum(scaled(w, hit.vector(HitLanes::kNormals)),
-                                  scaled(hit_u, hit.vector(HitLanes::kNormals + 3))),
-                              scaled(hit_v, hit.vector(HitLanes::kNormals + 6)));
-  Vec3Lanes normal = if_then_else(
-      smooth, unit_or(transposed_times(local_from_world, blend), geometric), geometric);
+  const Vec3Lanes blend = blended_normal(hit, local_from_world, hit_u, hit_v);
+  Vec3Lanes normal = if_then_else(nonzero(hit.smooth), unit_or(blend, geometric), geometric);
   const auto behind = hn::Gt(dot(geometric, direction), zero);
   geometric = if_then_else(behind, negated(geometric), geometric);
   normal = if_then_else(behind, negated(normal), normal);

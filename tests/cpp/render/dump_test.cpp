@@ -77,6 +77,27 @@ TEST_F(Dump, RendersTheSamePicture) {
   EXPECT_EQ(render(committed(read.scene), read.settings), render(original, settings()));
 }
 
+TEST_F(Dump, KeepsShadowTerminators) {
+  const auto with = [](float cutoff, float frequency) {
+    auto made = scene();
+    SceneTables tables;
+    tables.objects.resize(1);
+    tables.objects[0].terminator_cutoff = cutoff;
+    tables.objects[0].terminator_frequency = frequency;
+    made->set_tables(tables);
+    return committed(made);
+  };
+  const auto plain = render(with(0.0f, 1.0f), settings());
+  for (const auto& [cutoff, frequency] : {std::pair(0.4f, 1.0f), {0.0f, 1.3f}, {0.4f, 1.3f}}) {
+    const auto original = with(cutoff, frequency);
+    const auto picture = render(original, settings());
+    write_dump(path_, *original, settings());
+    const DumpedRender read = read_dump(path_, shared_pool(), Cancel());
+    EXPECT_EQ(render(committed(read.scene), read.settings), picture);
+    EXPECT_NE(picture, plain);
+  }
+}
+
 TEST_F(Dump, OfADumpIsTheSameFile) {
   write_dump(path_, *scene(), settings());
   const std::string first = bytes();

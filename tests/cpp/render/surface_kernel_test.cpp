@@ -17,12 +17,18 @@ namespace {
 
 std::shared_ptr<Scene> odd_scene() {
   const auto smooth = sphere(12, Vec3d(0), 1.0, true).mesh();
+  // Of one user each: its normals are interpolated in the world.
+  const auto once = sphere(6, Vec3d(0), 1.0, true).mesh();
+  const auto bulging = deforming(sphere(6, Vec3d(0), 1.0, true), 2,
+                                 [](const Vec3d& p, double t) { return (1.0 + 0.2 * t) * p; });
   const auto flat = sphere(7, Vec3d(0), 1.0, false).mesh();
   const auto put = [](double x, double y, double z, const Vec3d& size) {
     return glm::scale(glm::translate(Mat4d(1.0), Vec3d(x, y, z)), size);
   };
   Mat4d sheared = put(-2, 1, 1, Vec3d(1));
   sheared[2][0] = 0.8;
+  Mat4d once_sheared = put(0.6, -3.4, 0.5, Vec3d(0.3, -0.4, 0.4));
+  once_sheared[1][2] = 0.3;
   const Curves flat_hair = made_fur(400, 5, 0.6, 0.04, 2.0, CurveShape::kRibbon);
   const Curves thick_hair = made_fur(400, 5, 0.6, 0.04, 2.0, CurveShape::kThick);
   const std::vector<float> points = {0, 0, 0, 0.5f, 0.2f, 0, 0, 0.5f, 0.4f},
@@ -40,6 +46,8 @@ std::shared_ptr<Scene> odd_scene() {
   return make_scene({{quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}).mesh()},
                      {smooth, put(0, 0, 1, Vec3d(1))},
                      {smooth, put(2, 1, 1, Vec3d(-1, 1, 0.5))},
+                     {once, once_sheared},
+                     {bulging, put(-2.5, -1.2, 1.6, Vec3d(0.6, 0.3, 0.5))},
                      {flat, sheared},
                      {flat, put(1, -2, 1, Vec3d(0.7, 0.7, 0))},
                      {flat, put(0, 3, 1, Vec3d(1e-4))},
@@ -57,7 +65,11 @@ void expect_equal_to_surface_point(const std::shared_ptr<Scene>& scene, std::ptr
   const RenderContext context = make_context(*scene, Settings{}, filter.view());
   RayBatch rays;
   for (std::uint32_t y = 0; y < 100; ++y) {
-    for (std::uint32_t x = 0; x < 160; ++x) rays.push(start_ray(context, x, y, y % 5));
+    for (std::uint32_t x = 0; x < 160; ++x) {
+      Ray ray = start_ray(context, x, y, y % 5);
+      ray.time = static_cast<float>(x % 8) / 7.0f;
+      rays.push(ray);
+    }
   }
   std::vector<Hit> hits(rays.size());
   intersect(context.scene, rays.span(), hits.data());
@@ -68,7 +80,7 @@ void expect_equal_to_surface_point(const std::shared_ptr<Scene>& scene, std::ptr
     surfaces.clear(rays.size());
     for (std::uint32_t i = 0; i < rays.size(); ++i) {
       if (!hits[i].valid()) continue;
-      surfaces.push(i, hits[i], 0.0f, i, 3 * i);
+      surfaces.push(i, hits[i], rays.span().time[i], i, 3 * i);
       ++hit_once[hits[i].instance];
     }
     surfaces.fill(context, hits.data(), rays.span());
@@ -90,7 +102,7 @@ void expect_equal_to_surface_point(const std::shared_ptr<Scene>& scene, std::ptr
 
 TEST(SurfaceKernel, EqualsSurfacePoint) {
   // All but the tiny one and the points without volume are in the picture.
-  expect_equal_to_surface_point(committed(odd_scene()), 10);
+  expect_equal_to_surface_point(committed(odd_scene()), 12);
 }
 
 TEST(SurfaceKernel, DepthOfAPanoramaIsEqualToo) {
