@@ -109,7 +109,7 @@ class InstanceData:
 
     mesh: int  # index into SceneData.meshes
     name: str
-    matrices: DoubleArray  # [count, 4, 4]
+    matrices: FloatArray  # [count, 4, 4], single precision as Blender has them
     object_index: UIntArray  # [count], index into SceneData.objects
     mask: UIntArray | None = None  # [count], bits RAY_*; None: seen by every ray
     flags: UIntArray | None = None  # [count], bits FLAG_*; None: none

@@ -13,11 +13,13 @@ inline constexpr int kMany = 16;  ///< rays that are better in lanes themselves
 /// Rays waiting to visit a child: bit i for ray i.
 struct Waiting {
   static constexpr std::uint32_t kLeaf = 0x80000000u;  ///< bit of a child that is a leaf
+  /// kStackSize for two walks that take turns, and as much again for one of them to end.
+  static constexpr std::size_t kRoom = 2 * (kStackSize + kWidth);
 
   std::uint32_t size = 0;
-  std::uint32_t child[kStackSize + kWidth];
-  std::uint32_t rays[kStackSize + kWidth];
-  float begin[kStackSize + kWidth];  ///< for closest hits: where the first of the rays enters it
+  std::uint32_t child[kRoom];
+  std::uint32_t rays[kRoom];
+  float begin[kRoom];  ///< for closest hits: where the first of the rays enters it
 };
 
 /// Moves the lanes whose bit is set to the front. (Highway's Compress copies its table to the stack

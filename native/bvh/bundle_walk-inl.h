@@ -20,11 +20,21 @@ HWY_INLINE std::uint32_t walk_bundle(const TreeView& tree, const WalkingRays& wa
   Waiting waiting;
   std::uint32_t open = rays;
   visit_node<false>(tree.nodes[0], walking, reach, rays, waiting);
-  while (waiting.size > 0 && open != 0) {
-    const std::uint32_t child = waiting.child[--waiting.size];
-    const std::uint32_t active = waiting.rays[waiting.size] & open;
-    // What comes next is fetched meanwhile.
-    if (waiting.size > 0) fetch_soon(address(waiting.child[waiting.size - 1]));
+  std::uint32_t next = 0, next_rays = 0;
+  while (open != 0) {
+    std::uint32_t child = next, active = next_rays & open;
+    next_rays = 0;
+    if (active == 0) {
+      if (waiting.size == 0) break;
+      child = waiting.child[--waiting.size];
+      active = waiting.rays[waiting.size] & open;
+    }
+    // What comes next is taken now, before this one's children, and fetched meanwhile.
+    if (waiting.size > 0 && waiting.size < kStackSize) {
+      next = waiting.child[--waiting.size];
+      next_rays = waiting.rays[waiting.size];
+      fetch_soon(address(next));
+    }
     if (active == 0) continue;
     if (child & Waiting::kLeaf) {
       open &= ~visit(child & ~Waiting::kLeaf, active);

@@ -87,23 +87,33 @@ class DeformingMeshes:
         if self._steps(obj):
             self._hair.append(obj.original)
 
-    def record(self, shape: int, obj: Any, time: float) -> None:
-        """Takes the vertices of a shape as they are now, at a relative time; once for all of its
-        instances."""
+    def wants(self, shape: int, time: float) -> bool:
+        """Whether `record` is to be called for an instance of a shape at a relative time; once is
+        enough."""
         mesh = self._meshes.get(shape)
-        if mesh is not None and time in mesh.times and time not in mesh.seen:
-            with compat.mesh_of(obj) as evaluated:
-                seen = mesh.reader.at_other_time(evaluated)
-            if seen is not None:
-                mesh.seen[time] = seen
-            else:
-                mesh.times.clear()
-                self._warn(mesh.data.name, "its faces change while the shutter is open")
-        elif shape in self._unblurred and time == FIRST:
-            rest = self._unblurred.pop(shape)
-            now = compat.point_attribute(obj.data, "position", "FLOAT_VECTOR", 3)
-            if now is None or now.shape != rest.shape or (now != rest).any():
-                self._warn(name_of(obj), f"its {UNBLURRED[obj.type]} change their shape")
+        if mesh is not None:
+            return time in mesh.times and time not in mesh.seen
+        return time == FIRST and shape in self._unblurred
+
+    def record(self, shape: int, obj: Any, time: float) -> None:
+        """Takes the vertices of a shape as an evaluated object has them now."""
+        mesh = self._meshes.get(shape)
+        if mesh is None:
+            self._look_again(shape, obj)
+            return
+        with compat.mesh_of(obj) as evaluated:
+            seen = mesh.reader.at_other_time(evaluated)
+        if seen is not None:
+            mesh.seen[time] = seen
+        else:
+            mesh.times.clear()
+            self._warn(mesh.data.name, "its faces change while the shutter is open")
+
+    def _look_again(self, shape: int, obj: Any) -> None:
+        rest = self._unblurred.pop(shape)
+        now = compat.point_attribute(obj.data, "position", "FLOAT_VECTOR", 3)
+        if now is None or now.shape != rest.shape or (now != rest).any():
+            self._warn(name_of(obj), f"its {UNBLURRED[obj.type]} change their shape")
 
     def finish(self, meshes: list[AnyMesh]) -> None:
         """Gives what was followed its motion and its key, or the mesh that is known by that."""

@@ -2,38 +2,39 @@
 
 from __future__ import annotations
 
+from array import array
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import compat, reporting
-from ..errors import RenderCancelled
-from ..scene_data import InstanceData, ObjectData, SceneData
+from ..scene_data import InstanceData, ObjectData, SceneData, UIntArray
 from ..unchanged import Unchanged
 from .deform import DeformingMeshes
+from .instance_matrices import AllAtOnce, OneByOne, loses_memory
 from .materials import MaterialExporter
 from .motion import HAIR, SURFACE, InstanceMotion
 from .names import name_of
 from .shapes import NONE, TYPES, ShapeExporter
 from .unsupported import warn_object
 from .visibility import Visibility
+from .walk import Subject, object_of, walk
 from .wanted import Wanted
 
 UNSUPPORTED_TYPES = {"VOLUME": "a volume"}  # grease pencil is drawn by Blender, over the picture
-CANCEL_INTERVAL = 256  # instances between two looks at whether Blender wants to stop
+FLUSH_INTERVAL = 256  # instances of which Python's own numbers are kept at a time
 
 
-@dataclass(slots=True)
-class _Group:
-    """The instances of one shape while they are collected."""
+@dataclass(frozen=True, slots=True)
+class _Entry:
+    """What all instances of one shape of one subject have in common."""
 
-    rows: list[float] = field(default_factory=list)  # 12 numbers each: rows 0 to 2 of the matrix
-    objects: list[int] = field(default_factory=list)
-    masks: list[int] = field(default_factory=list)
-    flags: list[int] = field(default_factory=list)
-    slots: list[int] = field(default_factory=list)
+    shape: int
+    object_index: int
+    slots: int
 
 
 def export_instances(
@@ -43,26 +44,21 @@ def export_instances(
     """Fills shapes, instances, objects, materials and what was ignored into `data`; `motion` learns
     which instances there are."""
     exporter = _Exporter(engine, depsgraph, data, wanted, unchanged, deforming, motion)
-    for count, instance in enumerate(depsgraph.object_instances):
-        if count % CANCEL_INTERVAL == 0 and engine.test_break():
-            raise RenderCancelled
-        exporter.take(instance)
-    data.instances = [
-        _build(group, shape, data.meshes[shape].name) for shape, group in exporter.groups.items()
-    ]
+    exporter.walk()
+    data.instances = exporter.groups()
     data.ignored = dict(exporter.ignored)
 
 
 class _Exporter:
-    """One walk over the instances of a depsgraph."""
+    """One walk over the instances of a depsgraph; a few numbers are kept of each, no object."""
 
     def __init__(
         self, engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted, unchanged: Unchanged,
         deforming: DeformingMeshes, motion: InstanceMotion | None,
     ) -> None:  # fmt: skip
         self._engine = engine
-        self._scene = depsgraph.scene
-        self._objects = data.objects
+        self._depsgraph = depsgraph
+        self._data = data
         self._object2index: dict[int, int] = {}
         self._shapes = ShapeExporter(engine, depsgraph, data.meshes, wanted, unchanged, deforming)
         self._motion = motion
@@ -72,57 +68,112 @@ class _Exporter:
             if wanted.materials
             else None
         )
-        self.groups: dict[int, _Group] = {}
+        self._entries: list[_Entry] = []
+        # Of each instance that is taken, in the order of the walk:
+        self._entry = array("I")
+        self._masks = array("I")
+        self._flags = array("I")
+        self._matrices: OneByOne | AllAtOnce = OneByOne()
         self.ignored: Counter[str] = Counter()
 
-    def take(self, instance: Any) -> None:
-        obj = instance.object
+    def walk(self) -> None:
+        """Takes every instance. Raises RenderCancelled."""
+        number = -1
+        for number, instance, subject in walk(self._engine, self._depsgraph):
+            if number == 0 and not loses_memory(instance):
+                self._matrices = AllAtOnce()
+            self._take(subject, instance, number)
+            if number % FLUSH_INTERVAL == 0:
+                self._matrices.flush()
+        self._matrices.finish(self._depsgraph, number + 1)
+
+    def _take(self, subject: Subject, instance: Any, number: int) -> None:
         # A curve, text, surface or metaball comes twice: as itself, and as the mesh that it makes.
-        if obj.type not in TYPES:
-            self._note_ignored(obj, instance.show_self)
+        if subject.kind not in TYPES:
+            self._note_ignored(subject, instance.show_self)
             return
         if instance.show_self:
-            self._place(self._shapes.surface_of(obj), instance, obj, SURFACE)
+            entry = subject.surface
+            if entry is None:
+                obj = object_of(instance)
+                entry = subject.surface = self._add_entry(self._shapes.surface_of(obj), obj)
+            if entry != NONE:
+                self._place(entry, instance, subject, number, SURFACE)
         if instance.show_particles:
-            self._place(self._shapes.hair_of(obj), instance, obj, HAIR)
+            entry = subject.hair
+            if entry is None:
+                obj = object_of(instance)
+                entry = subject.hair = self._add_entry(self._shapes.hair_of(obj), obj)
+            if entry != NONE:
+                self._place(entry, instance, subject, number, HAIR)
 
-    def _place(self, shape: int, instance: Any, obj: Any, what: int) -> None:
-        if shape == NONE:
-            return
-        group = self.groups.get(shape)
-        if group is None:
-            group = self.groups[shape] = _Group()
+    def _place(self, entry: int, instance: Any, subject: Subject, number: int, what: int) -> None:
         if self._motion is not None:
-            self._motion.place(shape, len(group.objects), instance, obj, what)
-        original = obj.original
-        # foreach_get('matrix_world') on all is faster, and loses 220 bytes for each instance of
-        # particles and geometry nodes (3.4, 4.5); converting whole matrices is 8 times slower.
-        row_x, row_y, row_z, _ = instance.matrix_world
-        group.rows += row_x[:] + row_y[:] + row_z[:]
-        group.objects.append(self._object_index(original))
-        if self._materials is not None:
-            group.slots.append(self._materials.slots_of(obj))
+            shape = self._entries[entry].shape
+            self._motion.place(shape, len(self._entry), instance, subject, what)
+        self._entry.append(entry)
+        self._matrices.add(instance, number)
         if self._visibility.matters:
-            mask, flags = self._visibility.of(instance, original)
-            group.masks.append(mask)
-            group.flags.append(flags)
+            mask, flags = self._visibility.of(instance, subject.original)
+            self._masks.append(mask)
+            self._flags.append(flags)
+
+    def _add_entry(self, shape: int, obj: Any) -> int:
+        if shape == NONE:
+            return NONE
+        slots = 0 if self._materials is None else self._materials.slots_of(obj)
+        self._entries.append(_Entry(shape, self._object_index(obj.original), slots))
+        return len(self._entries) - 1
 
     def _object_index(self, original: Any) -> int:
         pointer = original.as_pointer()
         index = self._object2index.get(pointer)
         if index is None:
-            index = self._object2index[pointer] = len(self._objects)
-            self._objects.append(_object_data(original))
-            warn_object(self._engine, self._scene, original)
+            index = self._object2index[pointer] = len(self._data.objects)
+            self._data.objects.append(_object_data(original))
+            warn_object(self._engine, self._depsgraph.scene, original)
         return index
 
-    def _note_ignored(self, obj: Any, show_self: bool) -> None:
-        kind = obj.type
+    def _note_ignored(self, subject: Subject, show_self: bool) -> None:
+        kind = subject.kind
         if kind == "LIGHT":
             self.ignored["lamp"] += 1
         elif kind in UNSUPPORTED_TYPES and show_self:
-            what = UNSUPPORTED_TYPES[kind]
-            reporting.warn(self._engine, f'object "{name_of(obj)}" is {what}, not rendered yet')
+            what, name = UNSUPPORTED_TYPES[kind], name_of(subject.original)
+            reporting.warn(self._engine, f'object "{name}" is {what}, not rendered yet')
+
+    def groups(self) -> list[InstanceData]:
+        """What was taken: shape by shape, the instances of each in the order of the walk."""
+        if not self._entry:
+            return []
+        entry = np.frombuffer(self._entry, np.uint32)
+        shape = np.array([e.shape for e in self._entries], np.uint32)[entry]
+        order = np.argsort(shape, kind="stable")
+        shape = shape[order]
+        starts = np.flatnonzero(np.diff(shape)) + 1
+        return [self._group(entry, members) for members in np.split(order, starts)]
+
+    def _group(self, entry: UIntArray, members: NDArray[np.intp]) -> InstanceData:
+        own = entry[members]
+        shape = self._entries[own[0]].shape
+        if self._motion is not None:
+            self._motion.members[shape] = members
+
+        def chosen(numbers: array[int]) -> UIntArray | None:
+            return np.frombuffer(numbers, np.uint32)[members] if numbers else None
+
+        return InstanceData(
+            mesh=shape,
+            name=self._data.meshes[shape].name,
+            matrices=self._matrices.of(members),
+            object_index=np.array([e.object_index for e in self._entries], np.uint32)[own],
+            mask=chosen(self._masks),
+            flags=chosen(self._flags),
+            material_slots=(
+                None if self._materials is None
+                else np.array([e.slots for e in self._entries], np.uint32)[own]
+            ),
+        )  # fmt: skip
 
 
 def _object_data(original: Any) -> ObjectData:
@@ -131,20 +182,4 @@ def _object_data(original: Any) -> ObjectData:
         root = root.parent
     return ObjectData(
         name_of(original), original.pass_index, name_of(root), *compat.shadow_terminator(original)
-    )
-
-
-def _build(group: _Group, shape: int, name: str) -> InstanceData:
-    count = len(group.objects)
-    matrices = np.zeros((count, 4, 4))
-    matrices[:, :3, :] = np.array(group.rows).reshape(count, 3, 4)
-    matrices[:, 3, 3] = 1.0
-    return InstanceData(
-        mesh=shape,
-        name=name,
-        matrices=matrices,
-        object_index=np.array(group.objects, np.uint32),
-        mask=np.array(group.masks, np.uint32) if group.masks else None,
-        flags=np.array(group.flags, np.uint32) if group.flags else None,
-        material_slots=np.array(group.slots, np.uint32) if group.slots else None,
     )

@@ -22,18 +22,13 @@ class MaterialExporter:
         self._aovs = AovReader(engine, value_columns(view_layer))
         self._index: dict[int, int] = {}  # of materials by address; 0: no material
         self._slots: dict[tuple[int, ...], int] = {}
-        self._known: dict[tuple[int, int], int] = {}
 
     def slots_of(self, obj: Any) -> int:
         """The index of the list of slots that an evaluated object of type MESH has."""
-        key = (obj.as_pointer(), obj.data.as_pointer())
-        known = self._known.get(key)
-        if known is None:
-            slots = tuple(self._material(m) for m in self._surfaces(obj))
-            known = self._slots.setdefault(slots, len(self._slots))
-            if known == len(self._materials.slots):
-                self._materials.slots.append(slots)
-            self._known[key] = known
+        slots = tuple(self._material(m) for m in self._surfaces(obj))
+        known = self._slots.setdefault(slots, len(self._slots))
+        if known == len(self._materials.slots):
+            self._materials.slots.append(slots)
         return known
 
     def _surfaces(self, obj: Any) -> list[Any]:

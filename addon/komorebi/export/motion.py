@@ -10,13 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import RenderCancelled
-from ..scene_data import DoubleArray, InstanceData
+from ..scene_data import DoubleArray, FloatArray, InstanceData
 from .deform import DeformingMeshes
 from .shapes import TYPES
 from .shutter import Shutter, times
+from .walk import Subject, object_of, walk
 
-CANCEL_INTERVAL = 256  # instances between two looks at whether Blender wants to stop
 SURFACE, HAIR = 0, 1  # what of an object an instance shows
 
 # What stays the same over time: object, what of it, instancer, place among its instances.
@@ -27,9 +26,9 @@ Key = tuple[int, str, int, int, tuple[int, ...]]
 class _Track:
     """The instances of one shape."""
 
-    steps: dict[int, int] = field(default_factory=dict)  # by row; others stand still
-    particles: set[int] = field(default_factory=set)  # rows that are there only while they live
-    # What was seen at each time: rows, and 12 numbers of the matrix for each.
+    steps: dict[int, int] = field(default_factory=dict)  # by number; others stand still
+    particles: set[int] = field(default_factory=set)  # numbers that are there while they live
+    # What was seen at each time: which instances, and 12 numbers of the matrix for each.
     poses: dict[float, tuple[array[int], array[float]]] = field(default_factory=dict)
 
 
@@ -42,9 +41,10 @@ class InstanceMotion:
     def __init__(self, shutter: Shutter, deforming: DeformingMeshes) -> None:
         self._shutter = shutter
         self._deforming = deforming
-        self._rows: dict[Key, tuple[int, int] | None] = {}  # None: more than one has this key
+        self._places: dict[Key, tuple[int, int] | None] = {}  # None: more than one has this key
         self._tracks: dict[int, _Track] = {}
         self._steps: dict[tuple[int, int], int] = {}
+        self.members: dict[int, NDArray[np.intp]] = {}  # numbers of the instances of each shape
 
     @property
     def times(self) -> set[float]:
@@ -52,48 +52,45 @@ class InstanceMotion:
         counts = {n for track in self._tracks.values() for n in track.steps.values()}
         return {time for n in counts for time in times(n)} - {0.0} | self._deforming.times
 
-    def place(self, shape: int, row: int, instance: Any, obj: Any, what: int) -> None:
-        """Row `row` of the instances of `shape` is this one at rest."""
-        steps = self._steps_of(instance, obj)
+    def place(self, shape: int, number: int, instance: Any, subject: Subject, what: int) -> None:
+        """This instance at rest is the one of that number, and shows that shape."""
+        steps = self._steps_of(instance, subject)
         if not steps:
             return
-        key = _key(instance, obj, what)
-        self._rows[key] = None if key in self._rows else (shape, row)
+        key = _key(instance, subject, what)
+        self._places[key] = None if key in self._places else (shape, number)
         track = self._tracks.setdefault(shape, _Track())
-        track.steps[row] = steps
+        track.steps[number] = steps
         if instance.particle_system is not None:
-            track.particles.add(row)
+            track.particles.add(number)
 
     def record(self, engine: Any, depsgraph: Any, time: float) -> None:
-        """Sees where everything is now, at a relative time."""
-        for count, (instance, obj, what) in enumerate(_shown(depsgraph)):
-            if count % CANCEL_INTERVAL == 0 and engine.test_break():
-                raise RenderCancelled
-            place = self._rows.get(_key(instance, obj, what))
+        """Sees where everything is now, at a relative time. Raises RenderCancelled."""
+        for instance, subject, what in _shown(engine, depsgraph):
+            place = self._places.get(_key(instance, subject, what))
             if place is None:
                 continue
-            shape, row = place
-            if what == SURFACE:
-                self._deforming.record(shape, obj, time)
+            shape, number = place
+            if what == SURFACE and self._deforming.wants(shape, time):
+                self._deforming.record(shape, object_of(instance), time)
             track = self._tracks[shape]
-            if time in times(track.steps[row]):
-                rows, numbers = track.poses.setdefault(time, (array("l"), array("d")))
+            if time in times(track.steps[number]):
+                numbers, matrices = track.poses.setdefault(time, (array("q"), array("f")))
                 row_x, row_y, row_z, _ = instance.matrix_world
-                rows.append(row)
-                numbers.extend(row_x[:] + row_y[:] + row_z[:])
+                numbers.append(number)
+                matrices.extend(row_x[:] + row_y[:] + row_z[:])
 
     def finish(self, instances: list[InstanceData]) -> list[InstanceData]:
         """The same, with what moves in groups of its own; a particle that is not there at all of
         its times is left out, as in Cycles."""
         return [part for data in instances for part in self._parts(data)]
 
-    def _steps_of(self, instance: Any, obj: Any) -> int:
-        original = obj.original
+    def _steps_of(self, instance: Any, subject: Subject) -> int:
         parent = instance.parent.original if instance.is_instance and instance.parent else None
-        key = (original.as_pointer(), 0 if parent is None else parent.as_pointer())
+        key = (subject.address, 0 if parent is None else parent.as_pointer())
         steps = self._steps.get(key)
         if steps is None:
-            steps = self._steps[key] = self._shutter.steps(original, parent)
+            steps = self._steps[key] = self._shutter.steps(subject.original, parent)
         return steps
 
     def _parts(self, data: InstanceData) -> Iterator[InstanceData]:
@@ -101,57 +98,60 @@ class InstanceMotion:
         if track is None:
             yield data
             return
-        still = np.ones(len(data.matrices), np.bool_)
-        for steps in sorted(set(track.steps.values())):
-            rows = np.array([row for row, n in track.steps.items() if n == steps], np.int64)
-            motion, lived = _poses(track, rows, data.matrices, steps)
-            particle = np.array([row in track.particles for row in rows.tolist()], np.bool_)
-            gone = particle & ~lived
-            moves = (motion != motion[:, :1]).any(axis=(1, 2, 3)) & ~gone
-            still[rows[gone | moves]] = False
-            if moves.any():
-                part = data.take(rows[moves])
-                part.motion = motion[moves]
-                yield part
+        members = self.members[data.mesh].tolist()
+        steps_of = np.array([track.steps.get(number, 0) for number in members])
+        particle = np.array([number in track.particles for number in members])
+        row_of = np.zeros(max(members) + 1, np.int64)
+        row_of[members] = np.arange(len(members))
+        poses = {
+            time: (row_of[np.frombuffer(numbers, np.int64)],
+                   np.frombuffer(rows, np.float32).reshape(-1, 3, 4))
+            for time, (numbers, rows) in track.poses.items()
+        }  # fmt: skip
+        seen = np.zeros(len(members), np.int64)
+        moves = np.zeros(len(members), np.bool_)
+        for rows, matrices in poses.values():
+            seen[rows] += 1
+            moves[rows] |= (matrices != data.matrices[rows, :3]).any(axis=(1, 2))
+        gone = particle & (steps_of > 0) & (seen < steps_of - 1)
+        for steps in np.unique(steps_of[moves & ~gone]).tolist():
+            chosen = moves & ~gone & (steps_of == steps)
+            part = data.take(chosen)
+            part.motion = _motion(poses, chosen, part.matrices, steps)
+            yield part
+        still = ~(moves | gone)
         if still.any():
             yield data if still.all() else data.take(still)
 
 
-def _poses(
-    track: _Track, rows: NDArray[np.int64], matrices: DoubleArray, steps: int
-) -> tuple[DoubleArray, Any]:
-    """[rows, steps, 4, 4], at rest where nothing was seen; whether each was seen at all times."""
-    motion = np.repeat(matrices[rows][:, None], steps, axis=1)
-    seen = np.zeros((len(rows), steps), np.bool_)
-    seen[:, steps // 2] = True
-    place = np.full(len(matrices), -1, np.int64)
-    place[rows] = np.arange(len(rows))
+def _motion(
+    poses: dict[float, tuple[Any, FloatArray]], chosen: NDArray[np.bool_], rest: FloatArray,
+    steps: int,
+) -> DoubleArray:  # fmt: skip
+    """Poses [chosen, steps, 4, 4] of the chosen rows, at rest where nothing was seen."""
+    motion = np.repeat(rest[:, None], steps, axis=1).astype(np.float64)
+    place = np.cumsum(chosen) - 1
     for step, time in enumerate(times(steps)):
-        if time not in track.poses:
-            continue
-        found, numbers = track.poses[time]
-        at = place[np.frombuffer(found, np.dtype("l"))]
-        mine = at >= 0
-        motion[at[mine], step, :3] = np.frombuffer(numbers).reshape(-1, 3, 4)[mine]
-        seen[at[mine], step] = True
-    return motion, seen.all(axis=1)
+        if time in poses:
+            rows, matrices = poses[time]
+            mine = chosen[rows]
+            motion[place[rows[mine]], step, :3] = matrices[mine]
+    return motion
 
 
-def _shown(depsgraph: Any) -> Iterator[tuple[Any, Any, int]]:
-    for instance in depsgraph.object_instances:
-        obj = instance.object
-        if obj.type not in TYPES:
+def _shown(engine: Any, depsgraph: Any) -> Iterator[tuple[Any, Subject, int]]:
+    for _, instance, subject in walk(engine, depsgraph):
+        if subject.kind not in TYPES:
             continue
         if instance.show_self:
-            yield instance, obj, SURFACE
+            yield instance, subject, SURFACE
         if instance.show_particles:
-            yield instance, obj, HAIR
+            yield instance, subject, HAIR
 
 
-def _key(instance: Any, obj: Any, what: int) -> Key:
-    address = obj.original.as_pointer()
+def _key(instance: Any, subject: Subject, what: int) -> Key:
     if not instance.is_instance:
-        return address, obj.type, what, 0, ()
+        return subject.address, subject.kind, what, 0, ()
     parent = instance.parent
     of_parent = parent.original.as_pointer() if parent else 0
-    return address, obj.type, what, of_parent, instance.persistent_id[:]
+    return subject.address, subject.kind, what, of_parent, instance.persistent_id[:]

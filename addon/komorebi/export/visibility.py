@@ -26,18 +26,25 @@ class Visibility:
 
     def __init__(self, depsgraph: Any) -> None:
         self._view_layer = depsgraph.view_layer
+        self._known: dict[Any, tuple[int, int]] = {}
         self.matters = _layer_matters(self._view_layer.layer_collection) or any(
             _object_matters(obj) for obj in depsgraph.objects if obj.type not in NEVER_SEEN
         )
 
     def of(self, instance: Any, original: Any) -> tuple[int, int]:
         """Bits RAY_* and FLAG_* of an instance of `original`, its instancer's included."""
-        mask, flags = self._of_object(original)
+        mask, flags = self._of_known(original)
         if instance.is_instance and instance.parent:
-            parent_mask, parent_flags = self._of_object(instance.parent.original)
+            parent_mask, parent_flags = self._of_known(instance.parent.original)
             mask &= parent_mask
             flags |= parent_flags
         return mask, flags
+
+    def _of_known(self, original: Any) -> tuple[int, int]:
+        known = self._known.get(original)
+        if known is None:
+            known = self._known[original] = self._of_object(original)
+        return known
 
     def _of_object(self, obj: Any) -> tuple[int, int]:
         mask = RAY_ALL
