@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Any
 
+from ..passes import value_columns
 from ..scene_data import SceneData
 from ..unchanged import Unchanged
+from .aovs import warn_world
 from .camera import export_camera
 from .instance import export_instances
 from .unsupported import warn_unsupported
@@ -27,6 +29,7 @@ def export_scene(
     warn_unsupported(engine, depsgraph)
     # A view layer without its sky has no world at all, neither seen nor as a light.
     world = scene.world if depsgraph.view_layer.use_sky else None
+    warn_world(engine, world, value_columns(depsgraph.view_layer))
     data = SceneData(
         camera=export_camera(engine, depsgraph, view), world=export_world(engine, world)
     )
