@@ -159,6 +159,7 @@ def _native_mesh(
         vertex_normals=mesh.vertex_normals, smooth_faces=mesh.smooth_faces,
         face_materials=mesh.face_materials, corner_uvs=mesh.corner_uvs,
         motion_positions=mesh.motion_positions, motion_normals=mesh.motion_normals,
+        step_positions=mesh.step_positions,
         builder=builder, threads=threads, cancel=cancel, same_geometry=same_geometry,
     )  # fmt: skip
 

@@ -46,6 +46,8 @@ class MeshData:
     # are, at the other times in their order; with `positions` in the middle at even ones.
     motion_positions: FloatArray | None = None  # [2k, vertices, 3]
     motion_normals: FloatArray | None = None  # [2k, corners or vertices, 3]; None: always the same
+    # For the pass Vector alone: positions one frame before and after, of a mesh that stands still.
+    step_positions: FloatArray | None = None  # [2, vertices, 3]
     key: MeshKey | None = None
 
     @property

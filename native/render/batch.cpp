@@ -95,7 +95,9 @@ void BatchIntegrator::shade() {
     if (!hits_[i].valid()) {
       const Vec3 direction(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]);
       results_[i] = missed(context_, direction, rays.t_max[i], row(i));
-    } else if (!is_holdout(context_, hits_[i])) {
+    } else if (is_holdout(context_, hits_[i])) {
+      if (layout.size() > 0) put_values(context_, hits_[i], row(i));
+    } else {
       results_[i].alpha = 1.0f;
       surfaces_.push(i, hits_[i], rays.time[i], pixels_[paths_[i].pixel].seed,
                      paths_[i].sample * context_.light_samples);

@@ -90,6 +90,7 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
   if (!hit.valid()) return missed(context, ray.direction, ray.t_max, row);
   if (is_holdout(context, hit)) {
     const PixelSample hole;
+    put_values(context, hit, row);
     put_matte(layout, hole, row);
     return hole;
   }

@@ -70,12 +70,11 @@ void put_first(const RenderContext& context, const Hit& hit, const Ray& ray, flo
   }
 }
 
-void put_values(const RenderContext& context, std::uint32_t material, float* row) {
-  const PassLayout& layout = context.passes;
-  const SceneTables& tables = *context.tables;
-  if (layout.values == 0 || material == kNone) return;
-  std::copy_n(&tables.values[std::size_t{material} * tables.value_count], layout.values,
-              row + layout.place[static_cast<std::size_t>(Quantity::kMaterialValue)]);
+std::uint32_t material_of(const RenderContext& context, const Hit& hit) {
+  const InstanceView& instance = context.scene.instances[hit.instance];
+  const MeshView& mesh = context.scene.meshes[instance.mesh];
+  return context.tables->material_index(instance.material_slots,
+                                        mesh.tri2material ? mesh.tri2material[hit.primitive] : 0);
 }
 
 }  // namespace
@@ -86,23 +85,31 @@ void clear_row(const PassLayout& layout, float* row) {
   layout.put(row, Quantity::kMist, 1.0f);
 }
 
+void put_values(const RenderContext& context, const Hit& hit, float* row) {
+  const PassLayout& layout = context.passes;
+  if (layout.values == 0) return;
+  const std::uint32_t material = material_of(context, hit);
+  if (material == kNone) return;
+  const SceneTables& tables = *context.tables;
+  std::copy_n(&tables.values[std::size_t{material} * tables.value_count], layout.values,
+              row + layout.place[static_cast<std::size_t>(Quantity::kMaterialValue)]);
+}
+
 void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, const Vec3& normal,
                  float depth, std::uint32_t sample, float* row) {
   const PassLayout& layout = context.passes;
   const InstanceView& instance = context.scene.instances[hit.instance];
   const MeshView& mesh = context.scene.meshes[instance.mesh];
   const bool first = layout.firsts > 0 && sample == context.first_sample;
-  if (first || layout.ids > 0 || layout.values > 0) {
-    const std::uint32_t slot = mesh.tri2material ? mesh.tri2material[hit.primitive] : 0;
-    const std::uint32_t index = context.tables->material_index(instance.material_slots, slot);
+  if (first || layout.ids > 0) {
     const ObjectInfo object = context.tables->object(instance.object_index);
-    const MaterialInfo material = context.tables->material(index);
-    put_values(context, index, row);
+    const MaterialInfo material = context.tables->material(material_of(context, hit));
     if (first) put_first(context, hit, ray, depth, object, material, row);
     layout.put(row, Quantity::kMatteObject, std::bit_cast<float>(object.matte));
     layout.put(row, Quantity::kMatteAsset, std::bit_cast<float>(object.matte_asset));
     layout.put(row, Quantity::kMatteMaterial, std::bit_cast<float>(material.matte));
   }
+  put_values(context, hit, row);
   layout.put(row, Quantity::kNormal, normal);
   layout.put(row, Quantity::kDiffuseColor, context.albedo);
   layout.put(row, Quantity::kDenoisingDepth, hit.t);

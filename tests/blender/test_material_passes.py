@@ -110,7 +110,8 @@ def balls(materials):
 
 
 def test_aovs_are_cycles(folder):
-    scene = balls([plain, twice, grouped])
+    scene = balls([plain, twice, grouped, plain])
+    next(o for o in scene.objects if o.type == "MESH").is_holdout = True  # says it all the same
     add_aov("Mask", "VALUE")
     add_aov("Tint", "COLOR")
     with support.warnings() as sentences:
@@ -121,9 +122,10 @@ def test_aovs_are_cycles(folder):
     whole = inside(ours) & inside(theirs)
     background = (ours["CryptoObject00.g"] == 0.0) & (theirs["CryptoObject00.g"] == 0.0)
     assert whole.mean() > 0.1 and background.mean() > 0.3
-    for where in (whole, background):
-        close(ours, theirs, "Mask", "X", 1e-5, where, 1.0)
-        close(ours, theirs, "Tint", "RGBA", 1e-5, where, 1.0)
+    assert (ours["Mask.X"][background] == 0.75).mean() > 0.02  # the holdout
+    for where, share in ((whole, 1.0), (background, 0.995)):  # but for the holdout's edge
+        close(ours, theirs, "Mask", "X", 1e-5, where, share)
+        close(ours, theirs, "Tint", "RGBA", 1e-5, where, share)
     assert np.allclose(np.unique(np.round(ours["Tint.R"][whole], 4)), (0.0, 0.6, 0.9))
     assert set(np.unique(ours["Tint.A"][whole])) == {0.0, 1.0, 2.0}
     # A filter of the usual width gives the mean over all samples, the background's too.
@@ -152,6 +154,18 @@ def test_an_aov_that_varies_is_black_and_named():
         assert word in sentences[0], sentences
     assert not tint.any()
     assert mask.max() == 0.5
+
+
+def test_an_aov_of_the_world_is_black_and_named():
+    scene = balls([plain])
+    add_aov("Mask", "VALUE")
+    scene.world.use_nodes = True
+    aov_node(scene.world.node_tree, "Mask").inputs["Value"].default_value = 0.5
+    aov_node(scene.world.node_tree, "Not asked for")
+    with support.warnings() as sentences:
+        mask = support.exported_picture("Mask")
+    assert sentences == ['world "World", AOV "Mask": not rendered yet, black'], sentences
+    assert set(np.unique(mask)) >= {0.0, 0.75}
 
 
 def test_the_layers_override_says_what_aovs_show():

@@ -36,6 +36,9 @@ BAD_CURVES = {
     "out of range": ({"curve_offsets": np.array([0, 9, 5], np.int32)}, "1 curve ends before"),
     "style": ({"shape": "TUBES"}, "RIBBONS or THICK, not TUBES"),
     "subdivisions": ({"subdivisions": 20}, "subdivisions must be at most 8"),
+    "slots": ({"curve_materials": np.zeros(3, np.int32)}, "curve_materials must have one entry"),
+    "slot": ({"curve_materials": np.array([0, -1], np.int32)}, "1 curve has a material slot out"),
+    "uvs": ({"curve_uvs": np.zeros((1, 2), np.float32)}, "curve_uvs must have one row a curve"),
 }
 
 

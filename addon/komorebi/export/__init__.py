@@ -7,8 +7,10 @@ from contextlib import nullcontext
 from typing import Any
 
 from ..errors import RenderCancelled
+from ..passes import value_columns
 from ..scene_data import SceneData
 from ..unchanged import Unchanged
+from .aovs import warn_world
 from .camera_motion import CameraMotion
 from .deform import DeformingMeshes
 from .instance import export_instances
@@ -32,6 +34,7 @@ def export_scene(
     warn_scene(engine, depsgraph.scene)
     # A view layer without its sky has no world at all, neither seen nor as a light.
     world = depsgraph.scene.world if depsgraph.view_layer.use_sky else None
+    warn_world(engine, world, value_columns(depsgraph.view_layer))
     exported_world = export_world(engine, world)
     shutter = export_shutter(depsgraph.scene, depsgraph.view_layer, sources)
     unchanged = unchanged or Unchanged()

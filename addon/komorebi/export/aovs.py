@@ -59,6 +59,18 @@ class AovReader:
             values[column.first + channel] += value
 
 
+def warn_world(engine: Any, world: Any | None, columns: list[ValueColumn]) -> None:
+    """Names the AOVs that the world would show behind everything."""
+    tree = None if world is None else compat.world_nodes(world)
+    said = {compat.aov_name(node) for node, _ in _aov_nodes(tree, ())} if tree else set()
+    for column in columns:
+        if column.aov in said:
+            reporting.warn(
+                engine,
+                f'world "{name_of(world)}", AOV "{column.aov}": not rendered yet, black',
+            )
+
+
 def _aov_nodes(tree: Any, path: tuple[Any, ...]) -> Iterator[tuple[Any, tuple[Any, ...]]]:
     """AOV Output nodes, each with the group nodes that lead to it, the outermost first."""
     for node in tree.nodes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,10 @@ class _Mesh:
     key: MeshKey  # of what it is at rest
     times: list[float]
     seen: dict[float, tuple[FloatArray, FloatArray | None]] = field(default_factory=dict)
+
+    @property
+    def moves(self) -> bool:
+        return self.data.motion_positions is not None or self.data.step_positions is not None
 
 
 class DeformingMeshes:
@@ -74,7 +79,7 @@ class DeformingMeshes:
             seconds = self._shutter.duration * render.fps_base / render.fps
             reach = np.float32(0.5 * seconds) * velocity
             rest = mesh.data.positions
-            mesh.data.motion_positions = np.stack([rest - reach, rest + reach])
+            self._set_positions(mesh.data, np.stack([rest - reach, rest + reach]))
         return mesh.data
 
     def watch(self, shape: int, obj: Any, positions: FloatArray) -> None:
@@ -119,19 +124,12 @@ class DeformingMeshes:
         """Gives what was followed its motion and its key, or the mesh that is known by that."""
         for shape, mesh in self._meshes.items():
             self._set_motion(mesh)
-            key, moved = mesh.key, mesh.data.motion_positions
-            if moved is not None:
-                turned = mesh.data.motion_normals
-                key = MeshKey(
-                    key.geometry + mesh_cache.digest(core.load(), (moved,)),
-                    key.shading + mesh_cache.digest(core.load(), (turned,)),
-                )
-            mesh.data.key = key
-            meshes[shape] = mesh_cache.find(mesh.data.name, key) or mesh.data
+            mesh.data.key = _key_in_time(mesh.key, mesh.data)
+            meshes[shape] = mesh_cache.find(mesh.data.name, mesh.data.key) or mesh.data
         for emitter in self._hair:
             own = self._by_object.get(emitter.as_pointer())
             dynamic = any(system.use_hair_dynamics for system in emitter.particle_systems)
-            if dynamic or (own is not None and own.data.motion_positions is not None):
+            if dynamic or (own is not None and own.moves):
                 self._warn(name_of(emitter), "its hair changes its shape")
 
     def _set_motion(self, mesh: _Mesh) -> None:
@@ -142,10 +140,18 @@ class DeformingMeshes:
         positions = np.stack([positions for positions, _ in seen])
         if (positions == data.positions).all():
             return
-        data.motion_positions = positions
+        self._set_positions(data, positions)
+        if data.motion_positions is None:
+            return
         normals = [normals for _, normals in seen if normals is not None]
         if len(normals) == len(seen):
             data.motion_normals = np.stack(normals)
+
+    def _set_positions(self, data: MeshData, positions: FloatArray) -> None:
+        if self._shutter is not None and self._shutter.is_open:
+            data.motion_positions = positions
+        else:
+            data.step_positions = positions
 
     def _steps(self, obj: Any) -> int:
         shutter = self._shutter
@@ -154,6 +160,15 @@ class DeformingMeshes:
         return shutter.steps(obj.original)
 
     def _warn(self, name: str, why: str) -> None:
-        reporting.warn(
-            self._engine, f'object "{name}": {why}, which is not blurred; its own motion is'
-        )
+        is_open = self._shutter is not None and self._shutter.is_open
+        what = "which is not blurred" if is_open else "which the pass Vector leaves out"
+        reporting.warn(self._engine, f'object "{name}": {why}, {what}; its own motion is not lost')
+
+
+def _key_in_time(rest: MeshKey, data: MeshData) -> MeshKey:
+    """The key of a mesh that at rest would have that one."""
+    moved, turned, steps = data.motion_positions, data.motion_normals, data.step_positions
+    digest = partial(mesh_cache.digest, core.load())
+    geometry = b"" if moved is None else digest((moved,))
+    shading = b"" if moved is None and steps is None else digest((turned, steps))
+    return MeshKey(rest.geometry + geometry, rest.shading + shading)

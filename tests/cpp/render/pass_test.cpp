@@ -197,13 +197,13 @@ TEST(Passes, PlacesAreBlendersOwn) {
 TEST(Passes, MaterialValuesAreMeansOverAllSamples) {
   // The left half of the picture has one material, the right half another, the top no surface.
   auto scene = std::make_shared<Scene>();
-  const auto half = [&](double x, std::uint32_t slots) {
+  const auto half = [&](double x, std::uint32_t slots, std::uint32_t flags) {
     const auto mesh = scene->add_mesh(quad({x, -1, 0}, {1, 0, 0}, {0, 1.5, 0}).mesh());
-    const InstanceInput instance{mesh, Mat4d(1.0), 0, kMaskAll, 0, slots};
+    const InstanceInput instance{mesh, Mat4d(1.0), 0, kMaskAll, flags, slots};
     scene->add_instances({&instance, 1}, "half");
   };
-  half(-1, 0);
-  half(0, 1);
+  half(-1, 0, 0);
+  half(0, 1, kInstanceHoldout);  // which leaves this and nothing else
   SceneTables tables;
   tables.materials = {{0.0f, 0}, {0.0f, 0}};
   tables.slot_begin = {0, 1, 2};
