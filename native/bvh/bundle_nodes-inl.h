@@ -13,8 +13,8 @@ inline constexpr int kMany = 16;  ///< rays that are better in lanes themselves
 /// Rays waiting to visit a child: bit i for ray i.
 struct Waiting {
   static constexpr std::uint32_t kLeaf = 0x80000000u;  ///< bit of a child that is a leaf
-  /// kStackSize for two walks that take turns, and as much again for one of them to end.
-  static constexpr std::size_t kRoom = 2 * (kStackSize + kWidth);
+  /// As much again for walks that take turns, until one goes on by itself.
+  static constexpr std::size_t kRoom = 2 * kStackSize + 8 * kWidth;
 
   std::uint32_t size = 0;
   std::uint32_t child[kRoom];

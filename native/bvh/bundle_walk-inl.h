@@ -9,9 +9,12 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+inline constexpr std::uint32_t kAhead = 2;  ///< visits for which the next data have time to come
+
 /// Sends rays through a tree until all have found something: `visit(leaf, rays)` returns those
 /// that found their hit there, `address(child)` where a child's data is. Returns those that found
-/// any.
+/// any. What is taken off the stack is fetched then, and visited only after what was taken before
+/// it: in a tree that is larger than a cache, waiting for memory is what walking would do most.
 template <class Visit, class Address>
 HWY_INLINE std::uint32_t walk_bundle(const TreeView& tree, const WalkingRays& walking,
                                      const Reach& reach, std::uint32_t rays, const Visit& visit,
@@ -20,22 +23,24 @@ HWY_INLINE std::uint32_t walk_bundle(const TreeView& tree, const WalkingRays& wa
   Waiting waiting;
   std::uint32_t open = rays;
   visit_node<false>(tree.nodes[0], walking, reach, rays, waiting);
-  std::uint32_t next = 0, next_rays = 0;
-  while (open != 0) {
-    std::uint32_t child = next, active = next_rays & open;
-    next_rays = 0;
-    if (active == 0) {
-      if (waiting.size == 0) break;
+  std::uint32_t next[kAhead] = {}, next_rays[kAhead] = {};
+  std::uint32_t idle = 0;  // turns in which nothing was taken or visited
+  for (std::uint32_t turn = 0; open != 0 && idle <= kAhead; turn = (turn + 1) % kAhead, ++idle) {
+    std::uint32_t child = next[turn], active = next_rays[turn] & open;
+    next_rays[turn] = 0;
+    const bool crowded = waiting.size >= kStackSize;  // one walk by itself always finds room
+    if (waiting.size > 0 && !crowded) {
+      next[turn] = waiting.child[--waiting.size];
+      next_rays[turn] = waiting.rays[waiting.size];
+      fetch_soon(address(next[turn]));
+      idle = 0;
+    } else if (crowded && active == 0) {
       child = waiting.child[--waiting.size];
       active = waiting.rays[waiting.size] & open;
-    }
-    // What comes next is taken now, before this one's children, and fetched meanwhile.
-    if (waiting.size > 0 && waiting.size < kStackSize) {
-      next = waiting.child[--waiting.size];
-      next_rays = waiting.rays[waiting.size];
-      fetch_soon(address(next));
+      idle = 0;
     }
     if (active == 0) continue;
+    idle = 0;
     if (child & Waiting::kLeaf) {
       open &= ~visit(child & ~Waiting::kLeaf, active);
     } else {

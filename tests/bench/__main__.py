@@ -10,7 +10,20 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from bench import aims, core, curves, export, machine, meshes, options, pictures, ray_tables, scale
+from bench import (
+    aims,
+    core,
+    curves,
+    export,
+    instances,
+    machine,
+    meshes,
+    motion,
+    options,
+    pictures,
+    ray_tables,
+    scale,
+)  # fmt: skip
 from bench.progress import say
 from bench.tables import Table
 
@@ -25,7 +38,9 @@ PARTS: dict[str, Part] = {
     "memory": ("as build", core.measure_build, core.memory_tables),
     "pictures": ("20 minutes, longer where references are new", pictures.measure, pictures.tables),
     "export": ("2 minutes", export.measure, export.tables),
+    "instances": ("8 minutes", instances.measure, instances.tables),
     "curves": ("1 minute", curves.measure, curves.tables),
+    "motion": ("1 minute", motion.measure, motion.tables),
     "scale": ("3 minutes", scale.measure, scale.tables),
 }
 

@@ -20,23 +20,23 @@ SCRIPT = Path(__file__).resolve().parent / "export_bench.py"
 CASES = ("first", "unchanged", "moved", "changed", "kept")
 
 
-def hosts() -> list[list[str]]:
-    """The system's Blender where there is one, and Blender 4.5 as a module."""
+def hosts(script: Path) -> list[list[str]]:
+    """How to run a script in the system's Blender where there is one, and in Blender 4.5 as a
+    module."""
     blender = shutil.which(os.environ.get("KOMOREBI_BLENDER") or launch.DEFAULT_BLENDER)
-    found = [[PYTHON, str(SCRIPT)]]
+    found = [[PYTHON, str(script)]]
     if blender:
-        options = ["-b", "--factory-startup", "--python-exit-code", "1", "-P", str(SCRIPT), "--"]
+        options = ["-b", "--factory-startup", "--python-exit-code", "1", "-P", str(script), "--"]
         found.append([blender, *options])
     return found
 
 
-def measure(options: argparse.Namespace) -> list[Row]:
-    """A million faces, three repetitions: a minute a Blender."""
-    faces, repeats = (2000, 1) if options.quick else (1_000_000, options.rounds or 3)
+def run_in_each_blender(part: str, script: Path, *numbers: int) -> list[Row]:
+    """The rows that a script prints as its last line."""
     rows: list[Row] = []
-    for command in hosts():
+    for command in hosts(script):
         done = subprocess.run(
-            [*command, str(faces), str(repeats)],
+            [*command, *map(str, numbers)],
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             stdin=subprocess.DEVNULL,
@@ -47,8 +47,14 @@ def measure(options: argparse.Namespace) -> list[Row]:
         if not lines:
             raise RuntimeError(f"{command[0]} measured nothing: {done.stdout[-300:]}")
         rows += json.loads(lines[-1])
-        say(f"export: {rows[-1]['blender']}")
+        say(f"{part}: {rows[-1]['blender']}")
     return rows
+
+
+def measure(options: argparse.Namespace) -> list[Row]:
+    """A million faces, three repetitions: a minute a Blender."""
+    faces, repeats = (2000, 1) if options.quick else (1_000_000, options.rounds or 3)
+    return run_in_each_blender("export", SCRIPT, faces, repeats)
 
 
 def tables(rows: list[Row]) -> list[Table]:

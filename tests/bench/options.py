@@ -8,7 +8,7 @@ from pathlib import Path
 from bench.scenes import SCENES
 from bench.sources import SOURCES
 
-PARTS = ("build", "rays", "memory", "pictures", "export", "curves", "scale")
+PARTS = ("build", "rays", "memory", "pictures", "export", "instances", "curves", "motion", "scale")
 
 
 def size(word: str) -> tuple[int, int]:
