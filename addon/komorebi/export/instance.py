@@ -39,10 +39,11 @@ class _Entry:
 
 def export_instances(
     engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted, unchanged: Unchanged,
-    deforming: DeformingMeshes, motion: InstanceMotion | None = None,
+    deforming: DeformingMeshes | None = None, motion: InstanceMotion | None = None,
 ) -> None:  # fmt: skip
     """Fills shapes, instances, objects, materials and what was ignored into `data`; `motion` learns
-    which instances there are."""
+    which instances there are, and `deforming` which meshes may change."""
+    deforming = deforming or DeformingMeshes(engine, depsgraph, None)
     exporter = _Exporter(engine, depsgraph, data, wanted, unchanged, deforming, motion)
     exporter.walk()
     data.instances = exporter.groups()
