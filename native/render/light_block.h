@@ -35,6 +35,11 @@ class LightBlockBuffer {
   std::uint32_t place(std::uint32_t point, std::uint32_t ray) const {
     return ray * capacity_ + point;
   }
+  /// A coordinate of all directions from a place on.
+  Columns directions(std::uint32_t place) const {
+    const float* at = drawn_.data() + place;
+    return {at, at + t_max_.size(), at + 2 * t_max_.size()};
+  }
   Vec3 direction(std::uint32_t place) const { return entry(0, place); }
   Vec3 contribution(std::uint32_t place) const { return entry(3, place); }
 

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "bvh/traverse.h"
-#include "render/lifted_rays.h"
 #include "render/light.h"
 #include "render/light_block.h"
+#include "render/light_points.h"
 #include "render/surface_batch.h"
 
 namespace komorebi {
@@ -82,23 +82,34 @@ class LightCaster {
 
   /// Sets every ray's state, and how far it is lifted.
   void terminate_rays(const SurfaceBatch& surfaces, std::uint32_t begin, std::uint32_t end) {
-    const bool terminators = context_.has_terminators;
-    if (terminators) share_.resize(block_.size());
+    const bool lifts = context_.has_terminators && context_.lifts_rays;
+    if (lifts) share_.resize(block_.size());
+    for (std::uint32_t j = 0; j < context_.light_samples; ++j) {
+      const std::uint32_t first = block_.place(0, j), last = first + (end - begin);
+      for (std::uint32_t place = first; place < last; ++place) {
+        state_[place] = block_.contribution(place) != Vec3(0.0f) ? kDrawn : 0;
+      }
+      if (!lifts) continue;
+      surfaces.find_lifted_shares(begin, end, block_.directions(first), &share_[first]);
+      for (std::uint32_t place = first; place < last; ++place) {
+        if (!(share_[place] > 0.0f) || !state_[place]) continue;
+        const Vec3 normal = surfaces.geometric_normal(begin + (place - first));
+        const bool below = !(glm::dot(block_.direction(place), normal) > 0.0f);
+        state_[place] |= below ? kLifted | kBelow : kLifted;
+      }
+    }
+    if (context_.cuts_cosines) cut_cosines(surfaces, begin, end);
+  }
+
+  void cut_cosines(const SurfaceBatch& surfaces, std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t p = 0; p < end - begin; ++p) {
-      const Terminator t = terminators ? surfaces.terminator(begin + p) : Terminator();
-      const bool plain = t.cutoff == 0.0f && t.frequency == 1.0f;
+      const float frequency = surfaces.frequency(begin + p);
+      if (!(frequency > 1.0f)) continue;
       for (std::uint32_t j = 0; j < context_.light_samples; ++j) {
         const std::uint32_t place = block_.place(p, j);
-        Vec3 contribution = block_.contribution(place);
-        state_[place] = contribution != Vec3(0.0f) ? kDrawn : 0;
-        if (plain || !state_[place]) continue;
-        const Vec3 direction = block_.direction(place);
-        const float cosine = glm::dot(direction, surfaces.geometric_normal(begin + p));
-        share_[place] = terminate(context_, t, glm::dot(direction, surfaces.normal(begin + p)),
-                                  cosine, contribution);
-        if (context_.cuts_cosines && t.frequency > 1.0f)
-          block_.set_contribution(place, contribution);
-        if (share_[place] > 0.0f) state_[place] |= cosine > 0.0f ? kLifted : kLifted | kBelow;
+        if (!state_[place]) continue;
+        const float cosine = glm::dot(block_.direction(place), surfaces.normal(begin + p));
+        block_.set_contribution(place, block_.contribution(place) * cosine_left(frequency, cosine));
       }
     }
   }
@@ -107,44 +118,38 @@ class LightCaster {
   /// returns how many.
   std::uint64_t trace(const SurfaceBatch& surfaces, std::uint32_t begin, std::uint32_t end,
                       std::uint32_t mask, std::uint8_t wanted, std::uint8_t blocked) {
-    first_ray_.clear();
-    places_.clear();
-    lifted_.clear();
-    for (std::uint32_t p = 0; p < end - begin; ++p) {
-      first_ray_.push_back(static_cast<std::uint32_t>(places_.size()));
+    points_.clear(block_.size());
+    for (std::uint32_t s = begin; s < end; ++s) {
+      points_.begin(surfaces, s);
+      bool lifted = false;
       for (std::uint32_t j = 0; j < context_.light_samples; ++j) {
-        const std::uint32_t place = block_.place(p, j);
+        const std::uint32_t place = block_.place(s - begin, j);
         if (!(state_[place] & wanted)) continue;
         if (state_[place] & kLifted) {
-          lifted_.push(surfaces, begin + p, place, share_[place], state_[place] & kBelow);
+          lifted = true;
         } else {
-          places_.push_back(place);
+          points_.push_ray(place);
         }
       }
+      for (std::uint32_t j = 0; lifted && j < context_.light_samples; ++j) {
+        const std::uint32_t place = block_.place(s - begin, j);
+        if (!(state_[place] & wanted) || !(state_[place] & kLifted)) continue;
+        points_.begin_lifted(surfaces, s, share_[place], state_[place] & kBelow);
+        points_.push_ray(place);
+      }
     }
-    first_ray_.push_back(static_cast<std::uint32_t>(places_.size()));
     RayBundles bundles{};
-    surfaces.lend(bundles, begin, end);
-    bundles.first_ray = first_ray_.data();
-    bundles.place = places_.data();
-    std::uint64_t count = trace(bundles, places_, mask, blocked);
-    if (lifted_.size() == 0) return count;
-    bundles = {};
-    lifted_.lend(bundles);
-    return count + trace(bundles, lifted_.places(), mask, blocked);
-  }
-
-  std::uint64_t trace(RayBundles& bundles, const std::vector<std::uint32_t>& places,
-                      std::uint32_t mask, std::uint8_t blocked) {
+    points_.lend(bundles);
     block_.lend(bundles, context_.light_distance);
     bundles.mask = mask;
-    bits_.resize((places.size() + 31) / 32);
+    const std::uint32_t rays = bundles.ray_count();
+    bits_.resize((rays + 31) / 32);
     occluded(context_.scene, bundles, bits_.data());
-    rays_ += places.size();
+    rays_ += rays;
     std::uint64_t count = 0;
-    for (std::size_t k = 0; k < places.size(); ++k) {
+    for (std::uint32_t k = 0; k < rays; ++k) {
       if (!((bits_[k / 32] >> (k % 32)) & 1u)) continue;
-      state_[places[k]] |= blocked;
+      state_[bundles.place[k]] |= blocked;
       ++count;
     }
     return count;
@@ -152,10 +157,10 @@ class LightCaster {
 
   RenderContext context_;
   LightBlockBuffer block_;
-  std::vector<std::uint8_t> state_;                       // State bits of each place
-  std::vector<float> share_;                              // of the lift, of each place
-  std::vector<std::uint32_t> first_ray_, places_, bits_;  // of the rays traced: RayBundles
-  LiftedRays lifted_;
+  std::vector<std::uint8_t> state_;  // State bits of each place
+  std::vector<float> share_;         // of the lift, of each place
+  LightPoints points_;
+  std::vector<std::uint32_t> bits_;  // of the rays traced
   std::uint64_t rays_ = 0;
   RayTally tally_;
 };

@@ -6,6 +6,11 @@
 
 namespace komorebi {
 
+/// Coordinates of many vectors.
+struct Columns {
+  const float *x, *y, *z;
+};
+
 /// Points for which light rays are to be drawn, and room for what is drawn, as arrays.
 struct LightBlock {
   static constexpr std::uint32_t kLanes = 16;  ///< arrays are padded to multiples of this

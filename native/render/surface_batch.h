@@ -31,8 +31,10 @@ class SurfaceBatch {
   float time(std::uint32_t i) const { return floats_[10][i]; }
   std::uint32_t instance(std::uint32_t i) const { return instance_[i]; }
   std::uint32_t primitive(std::uint32_t i) const { return primitive_[i]; }
-  /// When the context has any (fill).
-  const Terminator& terminator(std::uint32_t i) const { return terminators_[i]; }
+  /// The terminator, when the context has any (fill).
+  Vec3 lift(std::uint32_t i) const { return vector(14, i); }
+  float cutoff(std::uint32_t i) const { return floats_[17][i]; }
+  float frequency(std::uint32_t i) const { return floats_[18][i]; }
   Vec3 leaving_origin(std::uint32_t i) const { return vector(6, i); }
 
   void push(std::uint32_t path, const Hit& hit, float time, std::uint32_t pixel_seed,
@@ -58,30 +60,31 @@ class SurfaceBatch {
       block.leaving_origin[c] = floats_[6 + c].data();
     }
     block.depth = floats_[9].data();
+    for (std::size_t c = 0; c < 3; ++c) block.lift[c] = floats_[14 + c].data();
+    block.cutoff = floats_[17].data();
+    block.frequency = floats_[18].data();
     surface_points(context, block);
-    terminators_.clear();
-    if (!context.has_terminators) return;
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      terminators_.push_back(
-          komorebi::terminator(context, hits[path_[i]], rays.time[path_[i]], geometric_normal(i)));
-    }
     if (!context.bends_round) return;
+    const float* cutoff = floats_[17].data();
     for (std::size_t c = 0; c < 3; ++c) {
-      for (std::uint32_t i = 0; i < count_; ++i) {
-        floats_[11 + c][i] = floats_[(terminators_[i].cutoff > 0.0f ? 0 : 3) + c][i];
-      }
+      float* to = floats_[11 + c].data();
+      const float *bent = floats_[c].data(), *flat = floats_[3 + c].data();
+      for (std::uint32_t i = 0; i < count_; ++i) to[i] = cutoff[i] > 0.0f ? bent[i] : flat[i];
     }
   }
 
-  /// Lends `bundles` points [begin, end), which their light rays leave.
-  void lend(RayBundles& bundles, std::uint32_t begin, std::uint32_t end) const {
-    bundles.point_count = end - begin;
-    bundles.origin_x = &floats_[6][begin];
-    bundles.origin_y = &floats_[7][begin];
-    bundles.origin_z = &floats_[8][begin];
-    bundles.time = &floats_[10][begin];
-    bundles.self_instance = &instance_[begin];
-    bundles.self_primitive = &primitive_[begin];
+  /// Which part of its lift a ray of each point [begin, end) starts at (core/terminator.h).
+  void find_lifted_shares(std::uint32_t begin, std::uint32_t end, const Columns& direction,
+                          float* share) const {
+    const Columns normal = columns(0, begin), geometric = columns(3, begin);
+    const float* cutoff = &floats_[17][begin];
+    for (std::uint32_t p = 0; p < end - begin; ++p) {  // in vectors, so nothing is skipped
+      const Vec3 d(direction.x[p], direction.y[p], direction.z[p]);
+      const Vec3 n(normal.x[p], normal.y[p], normal.z[p]);
+      const Vec3 g(geometric.x[p], geometric.y[p], geometric.z[p]);
+      const float found = lifted_share(cutoff[p], glm::dot(d, n), glm::dot(d, g));
+      share[p] = cutoff[p] > 0.0f ? found : 0.0f;
+    }
   }
 
   /// For the light rays of points [begin, end).
@@ -101,15 +104,18 @@ class SurfaceBatch {
  private:
   static constexpr std::size_t kPadding = 16;
 
+  Columns columns(std::size_t first, std::uint32_t i) const {
+    return {&floats_[first][i], &floats_[first + 1][i], &floats_[first + 2][i]};
+  }
   Vec3 vector(std::size_t first, std::uint32_t i) const {
     return Vec3(floats_[first][i], floats_[first + 1][i], floats_[first + 2][i]);
   }
 
   std::uint32_t count_ = 0;
   std::vector<std::uint32_t> path_, pixel_seed_, first_index_, instance_, primitive_;
-  std::vector<Terminator> terminators_;
-  // normal, geometric normal, leaving origin, depth, time, and the normal above which light comes
-  std::vector<float> floats_[14];
+  // normal, geometric normal, leaving origin, depth, time, the normal above which light comes, and
+  // the terminator's lift, cutoff and frequency
+  std::vector<float> floats_[19];
 };
 
 }  // namespace komorebi

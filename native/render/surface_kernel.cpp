@@ -1,6 +1,7 @@
 #include "render/surface_kernel.h"
 
 #include "bvh/kernel.h"
+#include "render/light.h"
 
 namespace komorebi {
 
@@ -14,6 +15,12 @@ void surface_point_at(const RenderContext& context, const SurfaceBlock& block, s
     block.leaving_origin[c][i] = origin[c];
   }
   block.depth[i] = camera_depth(context.camera, point.position);
+  if (!context.has_terminators) return;
+  const Terminator end =
+      terminator(context, block.hits[path], block.rays.time[path], point.geometric_normal);
+  for (int c = 0; c < 3; ++c) block.lift[c][i] = end.lift[c];
+  block.cutoff[i] = end.cutoff;
+  block.frequency[i] = end.frequency;
 }
 
 void surface_points(const RenderContext& context, const SurfaceBlock& block) {

@@ -15,10 +15,12 @@ struct SurfaceBlock {
   float *normal[3], *geometric_normal[3];
   float* leaving_origin[3];
   float* depth;  ///< camera_depth
+  /// The point's Terminator; nothing is written unless the context has terminators.
+  float *lift[3], *cutoff, *frequency;
 };
 
-/// surface_point, leaving_origin (core/surface_point.h) and camera_depth for many hits at once,
-/// compiled for one instruction set; equal to them in every bit.
+/// surface_point, leaving_origin (core/surface_point.h), camera_depth and terminator (light.h) for
+/// many hits at once, compiled for one instruction set; equal to them in every bit.
 struct SurfaceKernel {
   const char* name;
   void (*surface_points)(const RenderContext& context, const SurfaceBlock& block);

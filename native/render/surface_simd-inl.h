@@ -1,4 +1,5 @@
-// surface_point (core/surface_point.h) for many hits, a lane a hit, to the bit; see lanes-inl.h.
+// surface_point (core/surface_point.h) and terminator (light.h) for many hits, a lane a hit, to the
+// bit; see lanes-inl.h.
 
 HWY_BEFORE_NAMESPACE();
 namespace komorebi {
@@ -18,7 +19,9 @@ struct HitLanes {
     kDirection = 42,
     kU = 45,
     kV = 46,
-    kFields = 47
+    kCutoff = 47,  // of the object's terminator; 0 where the triangle is flat
+    kFrequency = 48,
+    kFields = 49
   };
   alignas(64) float fields[kFields][kLanes];
   alignas(64) std::uint32_t smooth[kLanes];
@@ -63,6 +66,11 @@ struct HitLanes {
     }
     smooth[lane] = is_smooth;
     stretched[lane] = is_smooth ? mesh.stretched : 0;
+    if (context.has_terminators) {
+      const ObjectInfo object = context.tables->object(instance.object_index);
+      fields[kCutoff][lane] = is_smooth ? object.terminator_cutoff : 0.0f;
+      fields[kFrequency][lane] = object.terminator_frequency;
+    }
     put(kLocalFromWorld, entries(instance.local_from_world), 9, lane);
     put(kWorldFromLocal, entries(instance.world_from_local), 9, lane);
     put(kPosition, &instance.position.x, 3, lane);
@@ -145,6 +153,30 @@ HWY_INLINE void store(const Vec3Lanes& v, float* const (&columns)[3], std::size_
   hn::StoreU(v.z, TagF(), columns[2] + i);
 }
 
+HWY_INLINE void finish_terminators(const HitLanes& hit, const Mat3Lanes& world_from_local,
+                                   const Mat3Lanes& local_from_world, const Vec3Lanes& geometric,
+                                   const SurfaceBlock& block, std::size_t to) {
+  const Float zero = f32(0.0f);
+  Float cutoff = hit.load(HitLanes::kCutoff);
+  Vec3Lanes lift{zero, zero, zero};
+  if (!hn::AllFalse(TagF(), hn::Gt(cutoff, zero))) {
+    const Vec3Lanes corner[3] = {hit.vector(HitLanes::kCorners), hit.vector(HitLanes::kCorners + 3),
+                                 hit.vector(HitLanes::kCorners + 6)};
+    const Vec3Lanes normal[3] = {hit.vector(HitLanes::kNormals), hit.vector(HitLanes::kNormals + 3),
+                                 hit.vector(HitLanes::kNormals + 6)};
+    const Vec3Lanes smooth =
+        smooth_lift_lanes(corner, normal, world_from_local, local_from_world,
+                          hit.load(HitLanes::kU), hit.load(HitLanes::kV), geometric);
+    lift = if_then_else(hn::Gt(cutoff, zero), smooth, lift);
+    const auto none =
+        hn::And(hn::And(hn::Eq(lift.x, zero), hn::Eq(lift.y, zero)), hn::Eq(lift.z, zero));
+    cutoff = hn::IfThenElse(hn::Or(none, hn::Not(hn::Gt(cutoff, zero))), zero, cutoff);
+  }
+  store(lift, block.lift, to);
+  hn::StoreU(cutoff, TagF(), block.cutoff + to);
+  hn::StoreU(hit.load(HitLanes::kFrequency), TagF(), block.frequency + to);
+}
+
 constexpr float kGamma2 = detail::gamma(2), kGamma6 = detail::gamma(6);
 
 HWY_INLINE void finish_points(const RenderContext& context, const HitLanes& hit,
@@ -219,6 +251,9 @@ HWY_INLINE void finish_points(const RenderContext& context, const HitLanes& hit,
   const Double depth = camera.kind == CameraKind::kPanorama ? hn::Sqrt(dot(from_eye, from_eye))
                                                             : dot(from_eye, gradient);
   hn::StoreU(to_float(depth), TagF(), block.depth + to);
+  if (context.has_terminators) {
+    finish_terminators(hit, world_from_local, local_from_world, geometric, block, to);
+  }
 }
 
 void surface_points(const RenderContext& context, const SurfaceBlock& block) {

@@ -12,6 +12,7 @@
 #include "hwy/highway.h"
 #include "render/lanes-inl.h"
 #include "render/vector_lanes-inl.h"
+#include "render/terminator_lanes-inl.h"
 #include "render/surface_simd-inl.h"
 // clang-format on
 

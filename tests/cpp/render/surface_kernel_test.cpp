@@ -1,5 +1,6 @@
-// Surface points worked out in lanes are those of surface_point, to the bit, for every instruction
-// set: smooth and flat, mirrored, sheared, flattened, far away, huge, tiny and degenerate.
+// Surface points worked out in lanes are those of surface_point, and their terminators those of
+// terminator, to the bit, for every instruction set: smooth and flat, mirrored, sheared, flattened,
+// far away, huge, tiny and degenerate.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,21 +44,27 @@ std::shared_ptr<Scene> odd_scene() {
   }
   sliver.face({0, 1, 2});
   sliver.face({0, 1, 3});
-  return make_scene({{quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}).mesh()},
-                     {smooth, put(0, 0, 1, Vec3d(1))},
-                     {smooth, put(2, 1, 1, Vec3d(-1, 1, 0.5))},
-                     {once, once_sheared},
-                     {bulging, put(-2.5, -1.2, 1.6, Vec3d(0.6, 0.3, 0.5))},
-                     {flat, sheared},
-                     {flat, put(1, -2, 1, Vec3d(0.7, 0.7, 0))},
-                     {flat, put(0, 3, 1, Vec3d(1e-4))},
-                     {smooth, put(0, 700, 60, Vec3d(300))},
-                     {sliver.mesh(), put(-1, -2, 0.5, Vec3d(2))},
-                     {ribbons, put(-1.5, -1, 0.4, Vec3d(0.4, 0.3, -0.3))},
-                     {strands, put(3, -1, 0.4, Vec3d(0.3))},
-                     {balls, put(1.8, -2.2, 0.9, Vec3d(0.5, 0.5, 0.2))},
-                     {balls, put(1.5, -3.0, 0.4, Vec3d(0.5, 0.5, 0))}},
-                    camera_at({4, -6, 3}, {0, 0, 0.8}, 160, 100));
+  auto scene = make_scene({{quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}).mesh()},
+                           {smooth, put(0, 0, 1, Vec3d(1))},
+                           {smooth, put(2, 1, 1, Vec3d(-1, 1, 0.5))},
+                           {once, once_sheared},
+                           {bulging, put(-2.5, -1.2, 1.6, Vec3d(0.6, 0.3, 0.5))},
+                           {flat, sheared},
+                           {flat, put(1, -2, 1, Vec3d(0.7, 0.7, 0))},
+                           {flat, put(0, 3, 1, Vec3d(1e-4))},
+                           {smooth, put(0, 700, 60, Vec3d(300))},
+                           {sliver.mesh(), put(-1, -2, 0.5, Vec3d(2))},
+                           {ribbons, put(-1.5, -1, 0.4, Vec3d(0.4, 0.3, -0.3))},
+                           {strands, put(3, -1, 0.4, Vec3d(0.3))},
+                           {balls, put(1.8, -2.2, 0.9, Vec3d(0.5, 0.5, 0.2))},
+                           {balls, put(1.5, -3.0, 0.4, Vec3d(0.5, 0.5, 0))}},
+                          camera_at({4, -6, 3}, {0, 0, 0.8}, 160, 100));
+  SceneTables tables;
+  tables.objects.resize(1);
+  tables.objects[0].terminator_cutoff = 0.3f;
+  tables.objects[0].terminator_frequency = 1.25f;
+  scene->set_tables(std::move(tables));
+  return scene;
 }
 
 void expect_equal_to_surface_point(const std::shared_ptr<Scene>& scene, std::ptrdiff_t seen) {
@@ -73,6 +80,7 @@ void expect_equal_to_surface_point(const std::shared_ptr<Scene>& scene, std::ptr
   }
   std::vector<Hit> hits(rays.size());
   intersect(context.scene, rays.span(), hits.data());
+  std::uint32_t lifted = 0;
   std::vector<std::uint32_t> hit_once(scene->view().instance_count, 0);
   for (const std::string& name : built_instruction_sets()) {
     force_instruction_set(name);
@@ -93,10 +101,17 @@ void expect_equal_to_surface_point(const std::shared_ptr<Scene>& scene, std::ptr
       ASSERT_EQ(surfaces.normal(s), expected.normal) << name << " " << i;
       ASSERT_EQ(geometric, expected.geometric_normal) << name << " " << i;
       ASSERT_EQ(surfaces.leaving_origin(s), leaving_origin(expected)) << name << " " << i;
+      const Terminator end =
+          terminator(context, hits[i], rays.span().time[i], expected.geometric_normal);
+      ASSERT_EQ(surfaces.lift(s), end.lift) << name << " " << i;
+      ASSERT_EQ(surfaces.cutoff(s), end.cutoff) << name << " " << i;
+      ASSERT_EQ(surfaces.frequency(s), end.frequency) << name << " " << i;
+      lifted += end.cutoff > 0.0f;
       ASSERT_EQ(surfaces.depth(s), camera_depth(context.camera, expected.position)) << name;
     }
   }
   force_instruction_set("");
+  EXPECT_GT(lifted, 1000u);
   EXPECT_GE(std::count_if(hit_once.begin(), hit_once.end(), [](auto n) { return n > 0; }), seen);
 }
 
