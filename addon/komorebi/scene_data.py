@@ -58,7 +58,7 @@ class CurveData:
     positions: FloatArray  # [keys, 3]
     radii: FloatArray  # [keys], half a curve's width, not negative
     curve_offsets: IntArray  # [curves + 1]
-    shape: str = "RIBBONS"  # or THICK
+    shape: str = "RIBBONS"  # or THICK, or THICK_LINEAR: straight from key to key
     subdivisions: int = 2  # a ribbon's segment is drawn by 2 ** subdivisions + 1 pieces
     key: MeshKey | None = None
 
