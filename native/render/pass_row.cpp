@@ -90,6 +90,7 @@ void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, c
   }
   layout.put(row, Quantity::kNormal, normal);
   layout.put(row, Quantity::kDiffuseColor, context.albedo);
+  layout.put(row, Quantity::kDenoisingRoughness, 1.0f);  // of matt surfaces, as in Cycles
   layout.put(row, Quantity::kDenoisingDepth, hit.t);
   if (layout.keeps(Quantity::kUv)) layout.put(row, Quantity::kUv, uv_at(mesh, hit));
   if (layout.keeps(Quantity::kMist)) {

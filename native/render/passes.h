@@ -35,6 +35,7 @@ enum class Quantity : std::uint8_t {
   kEnvironment,
   kDiffuseColor,
   kDenoisingNormal,
+  kDenoisingRoughness,
   kDenoisingDepth,
   kAmbientOcclusion,
   kSkyVisibility,
