@@ -109,6 +109,40 @@ def inside(channels):
     return coverage > 0.999
 
 
+def expect_close(ours, theirs, name, ids, tolerance, where, share=0.99):
+    a, b = stacked(ours, name, ids), stacked(theirs, name, ids)
+    near = (np.abs(a - b) <= tolerance * (1.0 + np.abs(b))).all(axis=-1)
+    assert near[where].mean() >= share, (
+        f"{name}: {near[where].mean():.4f} are close, e.g. {a[where][~near[where]][:3]} "
+        f"and {b[where][~near[where]][:3]}"
+    )
+
+
+def test_places_in_panoramas_are_cycles(folder):
+    """Depth, which there is the distance, and what else is measured from the camera."""
+    scene = furnished()
+    layer = bpy.context.view_layer
+    for switch in ("z", "mist", "position", "normal", "cryptomatte_object"):
+        setattr(layer, f"use_pass_{switch}", True)
+    layer.cycles.denoising_store_passes = True
+    scene.camera.location = (0.0, 0.0, 1.6)
+    camera = scene.camera.data
+    camera.type = "PANO"
+    settings = getattr(camera, "cycles", None)
+    if settings is None or not hasattr(settings, "panorama_type"):
+        settings = camera
+    for panorama in ("EQUIRECTANGULAR", "FISHEYE_EQUIDISTANT"):
+        settings.panorama_type = panorama
+        ours, theirs, _, _ = render_both(scene, folder, panorama, filter_width=0.01)
+        whole = inside(ours) & inside(theirs)
+        assert whole.mean() > 0.2
+        expect_close(ours, theirs, "Depth", "Z", 1e-3, whole)
+        expect_close(ours, theirs, "Mist", "Z", 1e-3, whole)
+        expect_close(ours, theirs, "Position", "XYZ", 1e-3, whole)
+        expect_close(ours, theirs, "Denoising Normal", "XYZ", 2e-3, whole)
+        expect_close(ours, theirs, "Denoising Depth", "Z", 1e-3, whole)
+
+
 def test_data_passes_are_cycles(folder):
     scene = furnished()
     layer = bpy.context.view_layer
@@ -123,12 +157,7 @@ def test_data_passes_are_cycles(folder):
     assert whole.mean() > 0.5
 
     def close(name, ids, tolerance, where=whole, share=0.99):
-        a, b = stacked(ours, name, ids), stacked(theirs, name, ids)
-        near = (np.abs(a - b) <= tolerance * (1.0 + np.abs(b))).all(axis=-1)
-        assert near[where].mean() >= share, (
-            f"{name}: {near[where].mean():.4f} are close, e.g. {a[where][~near[where]][:3]} "
-            f"and {b[where][~near[where]][:3]}"
-        )
+        expect_close(ours, theirs, name, ids, tolerance, where, share)
 
     close("Depth", "Z", 1e-3)
     close("Position", "XYZ", 1e-3)
@@ -140,6 +169,9 @@ def test_data_passes_are_cycles(folder):
     close("Denoising Normal", "XYZ", 2e-3)
     close("Denoising Albedo", "RGB", 1e-3)
     close("Denoising Depth", "Z", 1e-3)
+    if bpy.app.version >= (5, 2, 0):
+        close("Denoising Specular Albedo", "RGB", 0.0)
+        close("Denoising Roughness", "X", 1e-3)
     close(short_or_long("DiffCol", "Diffuse Color"), "RGB", 1e-3)
     close(short_or_long("Env", "Environment"), "RGB", 1e-3)
     sky = ours["Depth.Z"] > 1e9
