@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -74,6 +75,7 @@ def main(arguments: list[str]) -> int:
     files = [a for a in arguments if ".py" in a.rpartition("/")[2] and "=" not in a]
     files = files or sorted(str(path) for path in HERE.glob("test_*.py"))
     rows = []
+    shutil.rmtree(LOGS, ignore_errors=True)
     for number, argument in enumerate(a for a in arguments if "=" in a):
         program, _, user = argument.rpartition("=")
         row = Row(program, Path(user))
