@@ -263,13 +263,24 @@ MAX_CURVE_SUBDIVISIONS = 8  # the core's limit; nobody sees the pieces long befo
 
 
 def curve_shape(scene: Any) -> tuple[str, int]:
-    """RIBBONS or THICK, and the subdivisions of ribbons: Cycles' settings, or its defaults where
-    that add-on is off. Newer releases' THICK_LINEAR is drawn as THICK."""
+    """RIBBONS, THICK or, from 5.0, THICK_LINEAR, and the subdivisions of ribbons: Cycles' settings,
+    or its defaults where that add-on is off."""
     settings = getattr(scene, "cycles_curves", None)
     if settings is None:
         return "RIBBONS", CURVE_SUBDIVISIONS
-    shape = "RIBBONS" if settings.shape == "RIBBONS" else "THICK"
-    return shape, min(settings.subdivisions, MAX_CURVE_SUBDIVISIONS)
+    return settings.shape, min(settings.subdivisions, MAX_CURVE_SUBDIVISIONS)
+
+
+POLY = 1  # of the attribute curve_type
+
+
+def are_linear(curves: Any) -> bool:
+    """Whether Cycles draws Curves data straight from point to point, whatever the scene's shape:
+    from 5.0 on, where the first curve is a poly curve."""
+    if VERSION < (5, 0, 0):
+        return False
+    kinds = curves.attributes.get("curve_type")
+    return kinds is not None and len(kinds.data) > 0 and kinds.data[0].value == POLY
 
 
 def point_attribute(data: Any, name: str, kind: str, columns: int) -> FloatArray | None:

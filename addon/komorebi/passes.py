@@ -11,6 +11,8 @@ from typing import Any
 
 from . import compat
 
+ZERO = "zero"  # the source of what is null on matt surfaces: Blender's zeros stay
+
 
 @dataclass(frozen=True, slots=True)
 class Pass:
@@ -19,11 +21,16 @@ class Pass:
     name: str
     channel_ids: str
     kind: str  # Blender's socket type: COLOR, VECTOR, VALUE
-    source: str  # the core's name; "": there is nothing yet to fill it with
+    source: str  # the core's name, or ZERO; "": there is nothing yet to fill it with
 
     @property
     def channels(self) -> int:
         return len(self.channel_ids)
+
+    @property
+    def is_read(self) -> bool:
+        """Whether the core fills it."""
+        return self.source not in ("", ZERO)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,13 +45,19 @@ class Switch:
     channel_ids: str
     kind: str
     source: str = ""
+    since: tuple[int, int, int] = (0, 0, 0)  # the release that has it first
 
     @property
     def name(self) -> str:
         return self.names[-1] if compat.LONG_PASS_NAMES else self.names[0]
 
+    @property
+    def exists(self) -> bool:
+        """Whether this release of Blender has it."""
+        return self.since <= compat.VERSION
+
     def is_on(self, view_layer: Any) -> bool:
-        return bool(getattr(self.place(view_layer), self.prop, False))
+        return self.exists and bool(getattr(self.place(view_layer), self.prop, False))
 
     def place(self, view_layer: Any) -> Any:
         """What holds the property."""
@@ -85,8 +98,11 @@ SWITCHES = (
     Switch(_O, "use_pass_instance_index", "DATA", "Instance Index", ("Instance Index",), "X", _VALUE, "Instance Index"),
     Switch(_C, "denoising_store_passes", "DATA", "Denoising Data", ("Denoising Normal",), "XYZ", _VECTOR, "Denoising Normal"),
     Switch(_C, "denoising_store_passes", "", "", ("Denoising Albedo",), "RGB", _COLOR, "Diffuse Color"),
+    Switch(_C, "denoising_store_passes", "", "", ("Denoising Specular Albedo",), "RGB", _COLOR, ZERO, (5, 2, 0)),
+    Switch(_C, "denoising_store_passes", "", "", ("Denoising Roughness",), "X", _VALUE, "Denoising Roughness", (5, 2, 0)),
     Switch(_C, "denoising_store_passes", "", "", ("Denoising Depth",), "Z", _VALUE, "Denoising Depth"),
     Switch(_O, "pass_debug_sample_count", "DATA", "Sample Count", ("Debug Sample Count",), "X", _VALUE, "Debug Sample Count"),
+    Switch(_C, "pass_render_time", "", "", ("Render Time",), "X", _VALUE),
     Switch(_O, "use_pass_variance", "DATA", "Variance", ("Variance",), "RGB", _COLOR, "Variance"),
 
     Switch(_L, "use_pass_diffuse_direct", "", "", ("DiffDir", "Diffuse Direct"), "RGB", _COLOR),
@@ -100,6 +116,9 @@ SWITCHES = (
     Switch(_L, "use_pass_transmission_color", "", "", ("TransCol", "Transmission Color"), "RGB", _COLOR),
     Switch(_C, "use_pass_volume_direct", "", "", ("VolumeDir", "Volume Direct"), "RGB", _COLOR),
     Switch(_C, "use_pass_volume_indirect", "", "", ("VolumeInd", "Volume Indirect"), "RGB", _COLOR),
+    Switch(_C, "use_pass_volume_scatter", "", "", ("Volume Scatter",), "RGB", _COLOR),
+    Switch(_C, "use_pass_volume_transmit", "", "", ("Volume Transmit",), "RGB", _COLOR),
+    Switch(_C, "use_pass_volume_majorant", "", "", ("Volume Majorant",), "Z", _VALUE),
     Switch(_L, "use_pass_emit", "", "", ("Emit", "Emission"), "RGB", _COLOR),
     Switch(_L, "use_pass_environment", "LIGHT", "Environment", ("Env", "Environment"), "RGB", _COLOR, "Environment"),
     Switch(_L, "use_pass_shadow", "", "", ("Shadow",), "RGB", _COLOR),
@@ -167,4 +186,4 @@ def register_passes(engine: Any, scene: Any, view_layer: Any) -> None:
 
 def sources(passes: Sequence[Pass], *more: str) -> tuple[str, ...]:
     """What the core has to keep for them, and `more` that is not told to Blender."""
-    return tuple(dict.fromkeys(s for s in (*(p.source for p in passes), *more) if s))
+    return tuple(dict.fromkeys([p.source for p in passes if p.is_read] + [s for s in more if s]))

@@ -85,7 +85,7 @@ class ResultWriter:
                     continue
                 if combined is not None and p.name == "Combined":
                     compat.set_rect(target, combined)
-                elif p.source:  # else Blender's zeros stay
+                elif p.is_read:  # else Blender's zeros stay
                     pixels = session.read(p.source, x, y, width, height)
                     compat.set_rect(target, np.broadcast_to(pixels, (height, width, p.channels)))
         finally:

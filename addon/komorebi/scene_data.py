@@ -64,7 +64,7 @@ class CurveData:
     positions: FloatArray  # [keys, 3]
     radii: FloatArray  # [keys], half a curve's width, not negative
     curve_offsets: IntArray  # [curves + 1]
-    shape: str = "RIBBONS"  # or THICK
+    shape: str = "RIBBONS"  # or THICK, or THICK_LINEAR: straight from key to key
     subdivisions: int = 2  # a ribbon's segment is drawn by 2 ** subdivisions + 1 pieces
     curve_materials: IntArray | None = None  # [curves], material slots; None: all the first
     curve_uvs: FloatArray | None = None  # [curves, 2]; None: no UV map, or no pass that shows it

@@ -25,6 +25,9 @@ namespace komorebi {
 /// between two ends of a piece at which g changes from positive to negative, and is found there by
 /// bracketing alone. Curves have no caps and, as in Cycles, no inside: a ray that starts there
 /// leaves.
+///
+/// A linear thick curve is what a sphere sweeps that runs straight from key to key, its ends too:
+/// cones between spheres, as in Cycles and Embree. See meet_swept_sphere().
 struct CurveHit {
   float t;
   float u;  ///< along the segment, 0 at its first key
@@ -89,6 +92,12 @@ inline CurveSegment make_segment(const Vec4d& before, const Vec4d& begin, const 
   return s;
 }
 
+/// A segment on which everything changes evenly.
+inline CurveSegment make_straight_segment(const Vec4d& begin, const Vec4d& end) {
+  const Vec4d chord = end - begin;
+  return {begin, end, chord, chord, 0.0 * chord, 0.0 * chord};
+}
+
 namespace detail {
 
 inline Vec4d curve_key(const MeshView& mesh, std::uint32_t key) {
@@ -102,6 +111,7 @@ template <class Map>
 CurveSegment mapped_segment(const MeshView& mesh, std::uint32_t entry, const Map& map) {
   const std::uint32_t key = entry & kKeyMask;
   const Vec4d begin = map(curve_key(mesh, key)), end = map(curve_key(mesh, key + 1));
+  if (mesh.shape == CurveShape::kThickLinear) return make_straight_segment(begin, end);
   const Vec4d before = entry & kFirstOfCurve ? begin : map(curve_key(mesh, key - 1));
   const Vec4d after = entry & kLastOfCurve ? end : map(curve_key(mesh, key + 2));
   return make_segment(before, begin, end, after);
@@ -279,6 +289,47 @@ inline bool thick_depth(const Vec4d& at, double* depth) {
   return true;
 }
 
+/// Where a ray that sees the straight segment `s` enters what a sphere sweeps along it. The sphere
+/// of u touches the swept surface where q, a point of both, has y(q) = (q − begin)·e + r₀ r′ equal
+/// to u g, with e the chord, r′ the radii's difference and g = e² − r′²; on the cone that they
+/// touch that is a quadratic equation for the ray. Beyond its ends the last sphere is met. A
+/// segment has the sphere at its own end, and that at its begin only where the curve begins, so
+/// that a joint is met once.
+///
+/// @param after  the key after the segment's end; the end itself if there is none
+inline bool meet_swept_sphere(const CurveSegment& s, const Vec4d& after, bool is_first, double* u,
+                              double* depth) {
+  const Vec4d e = s.end - s.begin;
+  const Vec4d& p = s.begin;
+  const double length2 = glm::dot(e.at, e.at), growth = p.radius * e.radius;
+  const double g = length2 - e.radius * e.radius;
+  const double along = -(p.at.x * e.at.x + p.at.y * e.at.y);
+  // Depths are measured from the begin here: y(q) = y + z e_z.
+  const double y = along + growth;
+  const double a = g - e.at.z * e.at.z, b = -e.at.z * y;
+  const double c = g * (p.at.x * p.at.x + p.at.y * p.at.y) - along * along -
+                   p.radius * p.radius * length2 - 2.0 * growth * along;
+  const double root2 = b * b - a * c;
+  if (g > 0.0 && root2 >= 0.0) {
+    const double root = std::sqrt(root2);
+    const double z = b > 0.0 ? -(b + root) / a : c / (root - b);
+    const double at = (y + z * e.at.z) / g;
+    if (at >= 0.0 && at <= 1.0) {
+      *u = at;
+      return thick_depth(s.point(at), depth);
+    }
+  }
+  if (thick_depth(s.end, depth) && y + (*depth - p.at.z) * e.at.z > g) {
+    // Inside the next cone nothing is met.
+    const Vec4d next = after - s.end;
+    const Vec3d from = Vec3d(0.0, 0.0, *depth) - s.end.at;
+    *u = 1.0;
+    return !(glm::dot(from, next.at) > -s.end.radius * next.radius);
+  }
+  *u = 0.0;
+  return is_first && thick_depth(p, depth) && y + (*depth - p.at.z) * e.at.z < 0.0;
+}
+
 }  // namespace detail
 
 /// The nearest hit of a ray with an item: the specification. `hit` is written if there is one.
@@ -301,6 +352,16 @@ inline bool intersect_curve(const MeshView& mesh, const CurveItem& item, const R
     *hit = {t, at, static_cast<float>(v)};
     found = true;
   };
+  if (mesh.shape == CurveShape::kThickLinear) {
+    const bool is_last = item.entry & kLastOfCurve;
+    const Vec4d next = detail::curve_key(mesh, (item.entry & kKeyMask) + (is_last ? 1 : 2));
+    double u, depth;
+    if (detail::meet_swept_sphere(segment, {ray.seen(next.at), next.radius},
+                                  item.entry & kFirstOfCurve, &u, &depth)) {
+      keep(depth, u, 0.0);
+    }
+    return found;
+  }
   double u0 = piece_begin(mesh, item.first);
   Vec4d p0 = segment.point(u0);
   for (std::uint32_t i = item.first; i < item.last; ++i) {

@@ -15,8 +15,9 @@ enum class PrimitiveKind : std::uint32_t {
   kMovingTriangle = 3,  ///< of a mesh that deforms: core/moving_triangle.h
 };
 
-/// What a curve looks like: flat and turned to every ray, or round (core/curve.h).
-enum class CurveShape : std::uint32_t { kRibbon = 0, kThick = 1 };
+/// What a curve looks like: flat and turned to every ray, round, or round with straight segments
+/// (core/curve.h).
+enum class CurveShape : std::uint32_t { kRibbon = 0, kThick = 1, kThickLinear = 2 };
 
 enum InstanceFlag : std::uint32_t {
   kInstanceHoldout = 1u << 0,

@@ -40,10 +40,15 @@ endfunction()
 function(komorebi_ask_blender blender result)
   string(CONCAT question "import sys, sysconfig as s; print('KOMOREBI', '%d.%d' % sys.version_info[:2], "
                          "s.get_path('include'), s.get_config_var('EXT_SUFFIX'), sep='|')")
+  set(run_python -b --factory-startup --python-expr)
+  cmake_path(GET blender FILENAME name)
+  if(name MATCHES "^python[0-9.]*$")  # with the module bpy
+    set(run_python -c)
+  endif()
   # A python of pyenv's on the PATH makes Debian's Blender take that prefix for its own: hence the plain PATH.
   execute_process(
     COMMAND ${CMAKE_COMMAND} -E env --unset=PYTHONHOME --unset=PYTHONPATH PATH=/usr/bin:/bin
-            ${blender} -b --factory-startup --python-expr "${question}"
+            ${blender} ${run_python} "${question}"
     OUTPUT_VARIABLE output ERROR_VARIABLE errors RESULT_VARIABLE code TIMEOUT 120)
   if(NOT output MATCHES "KOMOREBI\\|([^|\n]+)\\|([^|\n]+)\\|([^|\n]+)")
     message(FATAL_ERROR "${blender} did not say which Python it runs (exit ${code}): ${output}${errors}")

@@ -8,7 +8,9 @@ namespace {
 CurveShape shape_from_name(const std::string& name) {
   if (name == "RIBBONS") return CurveShape::kRibbon;
   if (name == "THICK") return CurveShape::kThick;
-  throw std::invalid_argument("the shape of curves must be RIBBONS or THICK, not " + name);
+  if (name == "THICK_LINEAR") return CurveShape::kThickLinear;
+  throw std::invalid_argument("the shape of curves must be RIBBONS, THICK or THICK_LINEAR, not " +
+                              name);
 }
 
 std::shared_ptr<Mesh> from_curves(const std::string& name, const py::object& positions,
@@ -56,9 +58,10 @@ void bind_round(py::class_<Mesh, std::shared_ptr<Mesh>>& mesh) {
 
 positions: float32 [K, 3], object space, metres. radii: float32 [K], not negative. curve_offsets:
 int32 [C + 1], first key of each curve. shape: RIBBONS, flat and turned to every ray, of
-2**subdivisions + 1 pieces a segment, or THICK, round. curve_materials: int32 [C], material slots;
-None: all the first. curve_uvs: float32 [C, 2], where each grows, for the UV pass. Raises ValueError naming the curves and how
-many entries are wrong, Cancelled.)",
+2**subdivisions + 1 pieces a segment, THICK, round, or THICK_LINEAR, round and straight from key to
+key. curve_materials: int32 [C], material slots; None: all the first. curve_uvs: float32 [C, 2],
+where each grows, for the UV pass. Raises ValueError naming the curves and how many entries are
+wrong, Cancelled.)",
                   py::arg("name"), py::arg("positions"), py::arg("radii"), py::arg("curve_offsets"),
                   py::kw_only(), py::arg("shape") = "RIBBONS", py::arg("subdivisions") = 2,
                   py::arg("curve_materials") = py::none(), py::arg("curve_uvs") = py::none(),

@@ -104,7 +104,7 @@ std::shared_ptr<const Mesh> get_round(const ArrayFile& file, const std::string& 
   if (!are_curves) return Mesh::build(PointsInput{name, xyz, radius}, builder, pool, cancel);
   const auto offsets = file.get<std::int32_t>(key + "curve_offsets");
   const auto shape = file.get_value<std::uint32_t>(key + "shape");
-  if (shape > 1) throw std::runtime_error("the scene's curves are of an unknown shape");
+  if (shape > 2) throw std::runtime_error("the scene's curves are of an unknown shape");
   const CurvesInput input{name,
                           xyz,
                           radius,

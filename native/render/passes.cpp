@@ -23,6 +23,7 @@ constexpr PassDesc kPasses[] = {
     {"Environment", 3, kMean, Quantity::kEnvironment},
     {"Diffuse Color", 3, kMean, Quantity::kDiffuseColor},
     {"Denoising Normal", 3, kMean, Quantity::kDenoisingNormal},
+    {"Denoising Roughness", 1, kMean, Quantity::kDenoisingRoughness},
     {"Denoising Depth", 1, kMean, Quantity::kDenoisingDepth},
     {"Ambient Occlusion", 1, kMean, Quantity::kAmbientOcclusion},
     {"Sky Visibility", 1, kMean, Quantity::kSkyVisibility},

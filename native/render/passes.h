@@ -36,6 +36,7 @@ enum class Quantity : std::uint8_t {
   kEnvironment,
   kDiffuseColor,
   kDenoisingNormal,
+  kDenoisingRoughness,
   kDenoisingDepth,
   kAmbientOcclusion,
   kSkyVisibility,

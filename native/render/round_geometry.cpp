@@ -158,7 +158,9 @@ RoundGeometry build_curves(const CurvesInput& in, Builder builder, ThreadPool& p
   geometry.kind = PrimitiveKind::kCurve;
   geometry.shape = in.shape;
   geometry.subdivisions = in.subdivisions;
-  geometry.pieces = in.shape == CurveShape::kRibbon ? (1u << in.subdivisions) + 1 : kThickPieces;
+  geometry.pieces = in.shape == CurveShape::kRibbon  ? (1u << in.subdivisions) + 1
+                    : in.shape == CurveShape::kThick ? kThickPieces
+                                                     : 1;
   geometry.take_points(in.key2xyz, in.key2radius, pool);
   std::size_t segments = 0;
   for (std::size_t c = 0; c + 1 < in.curve_offsets.size(); ++c) {

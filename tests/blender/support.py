@@ -15,6 +15,9 @@ import bpy
 import numpy as np
 
 HERE = Path(__file__).parent
+# How Blender prints what an engine reports.
+ERROR = "Komorebi:" if bpy.app.version >= (5, 0, 0) else "Error: Komorebi:"
+WARNING = "Komorebi:" if bpy.app.version >= (5, 0, 0) else "Warning: Komorebi:"
 IS_MODULE = Path(sys.executable).stem.startswith("python") and not bpy.app.binary_path
 
 

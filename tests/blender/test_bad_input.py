@@ -30,7 +30,7 @@ def refused(folder, *words):
     """The file as it is now fails with exit code 1 and a sentence that holds these words."""
     done = support.blender_render(support.save(folder), folder / "refused_")
     assert done.code == 1, done
-    errors = [line for line in done.output.splitlines() if "Error: Komorebi" in line]
+    errors = [line for line in done.output.splitlines() if support.ERROR in line]
     for word in words:
         assert any(word in line for line in errors), (word, done)
     assert not any(name.startswith("refused_") for name in support.pictures(folder)), done

@@ -3,10 +3,7 @@
 import bpy
 import compositing
 import support
-
-# How Blender prints what an engine reports.
-ERROR = "Komorebi:" if bpy.app.version >= (5, 0, 0) else "Error: Komorebi:"
-WARNING = "Komorebi:" if bpy.app.version >= (5, 0, 0) else "Warning: Komorebi:"
+from support import ERROR, WARNING
 
 
 def rendered(folder, frames="1", **environment):

@@ -25,6 +25,7 @@ SETTINGS = (
 )  # fmt: skip
 ELSEWHERE = {
     **{f"border_{end}_{axis}": "drawn into the view" for end in ("min", "max") for axis in "xy"},
+    "compositing_node_group": "the compositor's header, from 5.0",
     "focus_subtarget": "drawn where the focus object is an armature",
     "feature_set": "read to say that adaptive subdivision is ignored",
     **dict.fromkeys(("fps", "fps_base"), "drawn where the rate is none of Blender's list"),

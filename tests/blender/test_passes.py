@@ -77,6 +77,31 @@ def furnished():
     return scene
 
 
+def test_places_in_panoramas_are_cycles(folder):
+    """Depth, which there is the distance, and what else is measured from the camera."""
+    scene = furnished()
+    layer = bpy.context.view_layer
+    for switch in ("z", "mist", "position", "normal", "cryptomatte_object"):
+        setattr(layer, f"use_pass_{switch}", True)
+    layer.cycles.denoising_store_passes = True
+    scene.camera.location = (0.0, 0.0, 1.6)
+    camera = scene.camera.data
+    camera.type = "PANO"
+    settings = getattr(camera, "cycles", None)
+    if settings is None or not hasattr(settings, "panorama_type"):
+        settings = camera
+    for panorama in ("EQUIRECTANGULAR", "FISHEYE_EQUIDISTANT"):
+        settings.panorama_type = panorama
+        ours, theirs, _, _ = render_both(scene, folder, panorama, filter_width=0.01)
+        whole = inside(ours) & inside(theirs)
+        assert whole.mean() > 0.2
+        close(ours, theirs, "Depth", "Z", 1e-3, whole)
+        close(ours, theirs, "Mist", "Z", 1e-3, whole)
+        close(ours, theirs, "Position", "XYZ", 1e-3, whole)
+        close(ours, theirs, "Denoising Normal", "XYZ", 2e-3, whole)
+        close(ours, theirs, "Denoising Depth", "Z", 1e-3, whole)
+
+
 def test_data_passes_are_cycles(folder):
     scene = furnished()
     layer = bpy.context.view_layer
@@ -103,6 +128,9 @@ def test_data_passes_are_cycles(folder):
     near("Denoising Normal", "XYZ", 2e-3)
     near("Denoising Albedo", "RGB", 1e-3)
     near("Denoising Depth", "Z", 1e-3)
+    if bpy.app.version >= (5, 2, 0):
+        near("Denoising Specular Albedo", "RGB", 0.0)
+        near("Denoising Roughness", "X", 1e-3)
     near(short_or_long("DiffCol", "Diffuse Color"), "RGB", 1e-3)
     near(short_or_long("Env", "Environment"), "RGB", 1e-3)
     sky = ours["Depth.Z"] > 1e9

@@ -6,6 +6,8 @@ Each renders in a process of its own: without any GPU, even a software one, Blen
 import numpy as np
 import support
 
+# Seconds: EEVEE compiles its shaders anew for each process, without a GPU for minutes.
+LIMIT = int(min(240 * support.slowness(), 800))
 SCRIPT = """
 import bpy, pathlib
 folder = pathlib.Path({folder!r})
@@ -52,7 +54,7 @@ empty.instance_type, empty.instance_collection = "COLLECTION", stock
 def drawn(folder, change):
     """The picture without and with the lines."""
     done = support.script(
-        SCRIPT.format(folder=str(folder), change=change), folder, timeout=240, DISPLAY=None
+        SCRIPT.format(folder=str(folder), change=change), folder, LIMIT, DISPLAY=None
     )
     if "EGL" in done.output and "RENDERED" not in done.output and done.code in (-6, -11):
         raise support.Skip("Blender has no GPU context here, not even in software")

@@ -188,6 +188,22 @@ def test_the_shape_is_cycles_setting():
     settings.shape, settings.subdivisions = "THICK", 3
     hair = curves_of(exported())["Cube"]
     assert (hair.shape, hair.subdivisions) == ("THICK", 3)
+    if bpy.app.version >= (5, 0, 0):
+        settings.shape = "THICK_LINEAR"
+        assert curves_of(exported())["Cube"].shape == "THICK_LINEAR"
+
+
+def test_poly_curves_are_straight_from_5_0_on():
+    data = bpy.data.hair_curves.new("Wire")
+    if not hasattr(data, "set_types"):
+        raise support.Skip("curves have no types that a script can set in this release")
+    data.add_curves([3, 2])
+    data.attributes["position"].data.foreach_set("vector", np.arange(15, dtype=np.float32))
+    support.add_object("Wire", data)
+    for kind in ("CATMULL_ROM", "POLY"):
+        data.set_types(type=kind)
+        straight = kind == "POLY" and bpy.app.version >= (5, 0, 0)
+        assert curves_of(exported())["Wire"].shape == ("THICK_LINEAR" if straight else "RIBBONS")
 
 
 def test_hair_is_in_the_picture():

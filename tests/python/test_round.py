@@ -34,7 +34,7 @@ BAD_CURVES = {
     "no offsets": ({"curve_offsets": OFFSETS[:0]}, "curve_offsets needs at least one entry"),
     "falling": ({"curve_offsets": np.array([0, 4, 3, 5], np.int32)}, "1 curve ends before"),
     "out of range": ({"curve_offsets": np.array([0, 9, 5], np.int32)}, "1 curve ends before"),
-    "style": ({"shape": "TUBES"}, "RIBBONS or THICK, not TUBES"),
+    "style": ({"shape": "TUBES"}, "RIBBONS, THICK or THICK_LINEAR, not TUBES"),
     "subdivisions": ({"subdivisions": 20}, "subdivisions must be at most 8"),
     "slots": ({"curve_materials": np.zeros(3, np.int32)}, "curve_materials must have one entry"),
     "slot": ({"curve_materials": np.array([0, -1], np.int32)}, "1 curve has a material slot out"),

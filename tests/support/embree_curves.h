@@ -18,7 +18,9 @@ class EmbreeCurves {
     rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, this);
     scene_ = rtcNewScene(device_);
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
-    RTCGeometry geometry = rtcNewGeometry(device_, curves.shape == CurveShape::kRibbon
+    const bool is_linear = curves.shape == CurveShape::kThickLinear;
+    RTCGeometry geometry = rtcNewGeometry(device_, is_linear ? RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE
+                                                   : curves.shape == CurveShape::kRibbon
                                                        ? RTC_GEOMETRY_TYPE_FLAT_CATMULL_ROM_CURVE
                                                        : RTC_GEOMETRY_TYPE_ROUND_CATMULL_ROM_CURVE);
     rtcSetGeometryTessellationRate(geometry, static_cast<float>(pieces));
@@ -27,6 +29,7 @@ class EmbreeCurves {
                                                              RTC_FORMAT_FLOAT4, 16,
                                                              curves.radius.size() + 2 * count));
     std::vector<std::uint32_t> first;
+    std::vector<std::uint8_t> neighbours;
     std::size_t at = 0;
     const auto put = [&](std::int32_t key) {
       const auto k = static_cast<std::size_t>(key);
@@ -36,7 +39,11 @@ class EmbreeCurves {
     for (std::size_t c = 0; c < count; ++c) {
       const std::int32_t begin = curves.offsets[c], end = curves.offsets[c + 1];
       for (std::int32_t k = begin; k + 1 < end; ++k) {
-        first.push_back(static_cast<std::uint32_t>(at) + static_cast<std::uint32_t>(k - begin));
+        first.push_back(static_cast<std::uint32_t>(at) + static_cast<std::uint32_t>(k - begin) +
+                        (is_linear ? 1u : 0u));
+        neighbours.push_back(
+            static_cast<std::uint8_t>((k > begin ? RTC_CURVE_FLAG_NEIGHBOR_LEFT : 0) |
+                                      (k + 2 < end ? RTC_CURVE_FLAG_NEIGHBOR_RIGHT : 0)));
       }
       put(begin);
       for (std::int32_t k = begin; k < end; ++k) put(k);
@@ -45,6 +52,12 @@ class EmbreeCurves {
     auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(std::uint32_t), first.size()));
     std::copy(first.begin(), first.end(), indices);
+    if (is_linear) {
+      auto* flags = static_cast<std::uint8_t*>(
+          rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_FLAGS, 0, RTC_FORMAT_UCHAR,
+                                  sizeof(std::uint8_t), neighbours.size()));
+      std::copy(neighbours.begin(), neighbours.end(), flags);
+    }
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_, geometry);
     rtcReleaseGeometry(geometry);

@@ -1,6 +1,7 @@
 """Hair curves (objects of type CURVES, or what geometry nodes make) → CurveData.
 
-As in Cycles, a curve of any type is drawn through its control points.
+As in Cycles, a curve of any type is drawn through its control points, poly curves straight from one
+to the next (from 5.0).
 """
 
 from __future__ import annotations
@@ -24,6 +25,8 @@ def export_curves(curves: Any, name: str, scene: Any, uvs: bool) -> CurveData | 
     if radii is None:
         radii = np.full((len(positions), 1), DEFAULT_RADIUS, np.float32)
     shape, subdivisions = compat.curve_shape(scene)
+    if compat.are_linear(curves):
+        shape = "THICK_LINEAR"
     return CurveData(
         name=name,
         positions=positions,

@@ -130,7 +130,8 @@ std::size_t expect_same_by_all(const SceneView& scene, const RayList& rays,
 class RoundHits : public ::testing::TestWithParam<Builder> {};
 
 TEST_P(RoundHits, AreTheSameByAll) {
-  for (const CurveShape shape : {CurveShape::kRibbon, CurveShape::kThick}) {
+  for (const CurveShape shape :
+       {CurveShape::kRibbon, CurveShape::kThick, CurveShape::kThickLinear}) {
     const Curves fur = made_fur(300, 6, 0.5, 0.02, 3.0, shape);
     const auto mesh = built(fur.input(), GetParam());
     const auto cloud = built(Cloud(500).input(), GetParam());
@@ -208,6 +209,68 @@ TEST(CurveAgainstEmbree, ThickCurves) {
     EXPECT_LE(c.other, 40u);
     EXPECT_LE(c.far_apart, 40u);
     EXPECT_LE(c.u_apart, 60u);
+  }
+}
+
+TEST(CurveAgainstEmbree, LinearThickCurves) {
+  // Embree's tolerance at a cone's begin is an absolute 1e-7 m² of the segment's squared length: it
+  // would cover curves of segments below a millimetre, so that these are left to the next test.
+  for (const double scale : {1.0, 1e3}) {
+    // The second: radii that change as much as the keys lie apart.
+    for (const double width : {0.01, 0.12}) {
+      const Curves fur = made_fur(2000, 6, 0.5, width, 3.0, CurveShape::kThickLinear);
+      const Compared c = against_embree(testing::scaled_fur(fur, scale), scale, 20000);
+      std::printf("x %g, %g: %u met, %u other, %u t, %u u\n", scale, width, c.met, c.other,
+                  c.far_apart, c.u_apart);
+      EXPECT_GT(c.met, 10000u);
+      EXPECT_LE(c.other, 5u);
+      EXPECT_LE(c.far_apart, 5u);
+      EXPECT_LE(c.u_apart, 5u);
+    }
+  }
+}
+
+TEST(Curve, LinearThickOnesAreSweptBySpheres) {
+  // The nearest of very many spheres along the curve, for rays from outside.
+  const Vec4d keys[] = {{{-1.5, 0, 0}, 0.3},     {{-0.8, 0.3, 0.2}, 0.1}, {{0, 0, 0.6}, 0.5},
+                        {{0.1, -0.7, 0.2}, 0.2}, {{0.9, -0.2, -1}, 0.0},  {{1.1, 0, -1.1}, 0.6},
+                        {{1.1, 1, 0}, 0.2}};
+  for (const double scale : {1e-3, 1.0, 1e3}) {
+    Curves curves;
+    curves.shape = CurveShape::kThickLinear;
+    for (const Vec4d& key : keys) curves.key(scale * key.at, scale * key.radius);
+    curves.end_curve();
+    const auto scene = placed({{built(curves.input())}});
+    Numbers numbers(8);
+    int met = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3d from = 4.0 * scale * glm::normalize(numbers.cube());
+      Ray ray;
+      ray.origin = Vec3(from - scene->origin());
+      ray.direction = Vec3(1.5 * scale * numbers.cube() - from);
+      const Vec3d o = Vec3d(ray.origin) + scene->origin(), d(ray.direction);
+      const double a = glm::dot(d, d);
+      double nearest = 1e30, margin = 1e30;  // of grazing, in squared metres over scale
+      for (int k = 0; k < 6; ++k) {
+        for (int j = 0; j <= 2000; ++j) {
+          const Vec4d at = keys[k] + (j / 2000.0) * (keys[k + 1] - keys[k]);
+          const Vec3d q = o - scale * at.at;
+          const double r = scale * at.radius, b = glm::dot(q, d);
+          const double inside = b * b - a * (glm::dot(q, q) - r * r);
+          margin = std::min(margin, std::abs(inside) / (a * scale * scale));
+          if (inside > 0.0) nearest = std::min(nearest, (-b - std::sqrt(inside)) / a);
+        }
+      }
+      const Hit hit = intersect_scalar(scene->view(), ray);
+      if (hit.valid() != (nearest < 1e29)) {
+        EXPECT_LT(margin, 1e-3) << i;
+        continue;
+      }
+      if (!hit.valid()) continue;
+      ++met;
+      EXPECT_NEAR(double(hit.t), nearest, 2e-4) << i << ", scale " << scale;
+    }
+    EXPECT_GT(met, 500);
   }
 }
 

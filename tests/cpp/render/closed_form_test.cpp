@@ -67,7 +67,8 @@ TEST_P(ClosedForm, PlaneBesideTangentSphereThatIsAPoint) {
 TEST_P(ClosedForm, PlaneUnderALongCurve) {
   // Right under a long horizontal cylinder of radius r, its axis at height h, the plane loses r / h
   // of its light; a ribbon, which turns to every ray, covers the same.
-  for (const CurveShape shape : {CurveShape::kRibbon, CurveShape::kThick}) {
+  for (const CurveShape shape :
+       {CurveShape::kRibbon, CurveShape::kThick, CurveShape::kThickLinear}) {
     Curves curve;
     curve.shape = shape;
     for (int k = -20; k <= 20; ++k) curve.key({20.0 * k, 0, 1}, 0.25);
@@ -86,7 +87,8 @@ TEST_P(ClosedForm, PlaneUnderALongCurve) {
 
 TEST_P(ClosedForm, ACurveAloneSeesAllOfTheSky) {
   // A straight curve shadows none of its own surface, at any scale and 10 km from the origin.
-  for (const CurveShape shape : {CurveShape::kRibbon, CurveShape::kThick}) {
+  for (const CurveShape shape :
+       {CurveShape::kRibbon, CurveShape::kThick, CurveShape::kThickLinear}) {
     for (const auto& [scale, far] : {std::pair{1.0, 0.0}, {1e-4, 0.0}, {1.0, 1e4}}) {
       Curves curve;
       curve.shape = shape;

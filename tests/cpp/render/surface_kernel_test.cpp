@@ -32,10 +32,12 @@ std::shared_ptr<Scene> odd_scene() {
   once_sheared[1][2] = 0.3;
   const Curves flat_hair = made_fur(400, 5, 0.6, 0.04, 2.0, CurveShape::kRibbon);
   const Curves thick_hair = made_fur(400, 5, 0.6, 0.04, 2.0, CurveShape::kThick);
+  const Curves straight_hair = made_fur(400, 5, 0.6, 0.04, 2.0, CurveShape::kThickLinear);
   const std::vector<float> points = {0, 0, 0, 0.5f, 0.2f, 0, 0, 0.5f, 0.4f},
                            radii = {0.4f, 0.3f, 0.2f};
   const auto ribbons = Mesh::build(flat_hair.input(), Builder::kSah, shared_pool(), Cancel());
   const auto strands = Mesh::build(thick_hair.input(), Builder::kSah, shared_pool(), Cancel());
+  const auto wires = Mesh::build(straight_hair.input(), Builder::kSah, shared_pool(), Cancel());
   const PointsInput three{"three", points, radii};
   const auto balls = Mesh::build(three, Builder::kSah, shared_pool(), Cancel());
   Polygons sliver;  // one of these triangles has no area, the other hardly any
@@ -56,6 +58,7 @@ std::shared_ptr<Scene> odd_scene() {
                            {sliver.mesh(), put(-1, -2, 0.5, Vec3d(2))},
                            {ribbons, put(-1.5, -1, 0.4, Vec3d(0.4, 0.3, -0.3))},
                            {strands, put(3, -1, 0.4, Vec3d(0.3))},
+                           {wires, put(2.7, -3.2, 0.4, Vec3d(0.3))},
                            {balls, put(1.8, -2.2, 0.9, Vec3d(0.5, 0.5, 0.2))},
                            {balls, put(1.5, -3.0, 0.4, Vec3d(0.5, 0.5, 0))}},
                           camera_at({4, -6, 3}, {0, 0, 0.8}, 160, 100));
