@@ -42,6 +42,7 @@ ELSEWHERE = {
 }
 NO_SETTING = {  # names of other types too, which are what is read
     "height": "of an image, read in native_scene.py",
+    "instance_object": "of an instance, not of particles",
     "location": "of a node",
     "material": "of a slot, not of particles",
     "name": "what a message says",
