@@ -29,7 +29,7 @@ const Plate kForDiffuse = {{-1.0, -0.6, 0.5}, {1.6, 0.9, 0}, kMaskDiffuse};
 const Plate kForShadow = {{-0.2, -0.5, 0.8}, {1.7, 2.0, 0}, kMaskShadow};
 
 std::shared_ptr<const Environment> map() {
-  static const auto made = std::make_shared<const Environment>(random_map(16, 8, 11));
+  static const std::shared_ptr<const Environment> made(new Environment(random_map(16, 8, 11)));
   return made;
 }
 
