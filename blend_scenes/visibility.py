@@ -23,8 +23,8 @@ def into(thing: bpy.types.Object, name: str) -> bpy.types.LayerCollection:
 
 
 def visibility() -> None:
-    """Balls that camera, diffuse or shadow rays do not see, holdouts of both kinds, a collection
-    for indirect light only, and instances whose instancer decides."""
+    """Balls that camera, diffuse or shadow rays do not see, or one alone of the last two, holdouts
+    of both kinds, a collection for indirect light only, and instances whose instancer decides."""
     empty_scene(320, 200)
     floor()
     kinds = (
@@ -37,6 +37,8 @@ def visibility() -> None:
         ball = add_sphere(f"Ball, {name}", 0.6, (-2.4 + 1.6 * i, 0.8, 0.7), level=5)
         for flag, value in flags.items():
             setattr(ball, flag, value)
+    for x, flag in ((-1.6, "visible_diffuse"), (1.6, "visible_shadow")):
+        setattr(add_sphere(f"Ball, no {flag}", 0.6, (x, 2.4, 0.7), level=5), flag, False)
     block = (0.8, 0.8, 1.2)
     into(add_box("Hole", block, (-2.4, -1.2, 0.6)), "Holdout").holdout = True
     into(add_box("Unseen", block, (-0.8, -1.2, 0.6)), "Indirect").indirect_only = True

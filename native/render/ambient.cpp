@@ -15,6 +15,7 @@ RenderContext ambient_context(const RenderContext& given, float distance) {
   context.albedo = Vec3(1.0f);
   context.light_distance = distance;
   context.light_mask = kMaskShadow;
+  context.surface_mask = 0;
   context.light_dimension = kVertexAmbient;
   context.lifts_rays = context.has_terminators;
   context.cuts_cosines = context.bends_round = false;

@@ -21,8 +21,9 @@ float cosine_share(EnvironmentSampling sampling, bool uniform_world) {
   return 1.0f;
 }
 
-/// Ambient occlusion asks who casts shadows. So does light from a map, but an even sky is sampled
-/// by Cycles through the surface alone, and there it is the visibility to diffuse rays that counts.
+/// Ambient occlusion asks who casts shadows. So does light from a map, if not alone (surface_mask),
+/// but an even sky is sampled by Cycles through the surface alone, and there it is the visibility
+/// to diffuse rays that counts.
 std::uint32_t light_mask(const Scene& scene, Method method) {
   return method == Method::kWorldLight && scene.world_is_uniform() ? kMaskDiffuse : kMaskShadow;
 }
@@ -45,6 +46,10 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.light_mask = light_mask(scene, settings.method);
   context.cosine_share = cosine_share(settings.environment_sampling, scene.world_is_uniform());
   const auto& map = scene.world_environment();
+  if (!ao && map && scene.splits_light_rays()) {
+    context.surface_mask = kMaskDiffuse;
+    context.sky_flux = static_cast<float>(scene.world_strength() * map->mean_flux());
+  }
   if (!ao && map && !map->black() &&
       settings.environment_sampling == EnvironmentSampling::kProduct) {
     context.product = map->product_table().view();

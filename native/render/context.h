@@ -25,6 +25,11 @@ struct RenderContext {
   float light_distance = 0.0f;  ///< largest t of a light ray
   float cosine_share = 1.0f;  ///< share of light rays drawn from the cosine; the rest from the map
   std::uint32_t light_mask = kMaskShadow;  ///< of light rays
+  /// Where it matters that Cycles finds a map's light by rays of two kinds (surface_share in
+  /// light.h): the mask of those that it samples by the surface, light_mask being that of the
+  /// others, and the map's mean_flux with its strength. Else 0.
+  std::uint32_t surface_mask = 0;
+  float sky_flux = 0.0f;
   /// Whether rays may leave above coarse smooth surfaces, and then go below their own triangle, or
   /// cosines be cut (core/terminator.h). Points have a terminator where any of their rays heeds it.
   bool has_terminators = false, lifts_rays = false, bends_round = false, cuts_cosines = false;

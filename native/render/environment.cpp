@@ -102,6 +102,21 @@ const ProductTable& Environment::product_table() const {
   return *product_table_;
 }
 
+double Environment::mean_flux() const {
+  std::call_once(flux_once_, [this] {
+    const auto z_at = [&](std::uint32_t row) {  // the lower edge of a row of texels
+      return sin_cos_turns(0.5 * row / height_ - 0.25).sin;
+    };
+    const float* texel = texels_.data();
+    for (std::uint32_t r = 0; r < height_; ++r) {
+      double sum = 0.0;
+      for (std::uint32_t i = 0; i < 3 * width_; ++i) sum += double{*texel++};
+      mean_flux_ += sum / 3.0 * (2.0 * kPi / width_) * (z_at(r + 1) - z_at(r));
+    }
+  });
+  return mean_flux_;
+}
+
 std::size_t Environment::byte_count() const {
   return sizeof(float) * texels_.size() +
          sizeof(std::uint32_t) * (row_cdf_.size() + column_cdf_.size()) +

@@ -28,6 +28,10 @@ class Environment {
   /// from any thread.
   const ProductTable& product_table() const;
 
+  /// ∫ (red + green + blue) / 3 over all directions, by solid angle, at strength 1: what Cycles
+  /// normalises its importance map by. Worked out at the first call. Safe from any thread.
+  double mean_flux() const;
+
   const std::string& name() const { return name_; }
   std::uint32_t width() const { return width_; }
   std::uint32_t height() const { return height_; }
@@ -47,8 +51,9 @@ class Environment {
   std::vector<float> texels_;
   std::vector<std::uint32_t> row_cdf_, column_cdf_;
   std::vector<double> row_z_;
-  mutable std::once_flag product_once_;
+  mutable std::once_flag product_once_, flux_once_;
   mutable std::unique_ptr<const ProductTable> product_table_;
+  mutable double mean_flux_ = 0.0;
   float max_radiance_ = 0.0f;
   std::uint64_t nonfinite_texels_ = 0, negative_texels_ = 0;
 };

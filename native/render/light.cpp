@@ -100,6 +100,14 @@ float terminate(const RenderContext& context, const Terminator& t, float cosine,
                                                : 0.0f;
 }
 
+float surface_share(const RenderContext& context, const Vec3& normal, const Vec3& direction) {
+  const Vec3 sky = environment_radiance(context.sky, direction);
+  const float of_surface = max_of(glm::dot(direction, normal), 0.0f) * kInvPi;
+  const float of_map = (sky.x + sky.y + sky.z) / (3.0f * context.sky_flux);
+  const float a = of_surface * of_surface, b = of_map * of_map;
+  return a + b > 0.0f ? a / (a + b) : 0.0f;
+}
+
 Ray light_ray(const RenderContext& context, const SurfacePoint& point, const Hit& hit,
               const Vec3& direction, float time) {
   Ray ray;

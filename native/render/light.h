@@ -28,6 +28,21 @@ Terminator terminator(const RenderContext& context, const Hit& hit, float time,
 float terminate(const RenderContext& context, const Terminator& terminator, float cosine,
                 float geometric_cosine, Vec3& contribution);
 
+/// The share of a map's light from a direction above the surface that Cycles finds by rays which it
+/// samples by the surface, and which see what diffuse rays see; the rest it finds by rays to where
+/// the map is bright, which see what shadow rays see. The power heuristic over the two densities
+/// (Veach 1997, §9.2.4), whatever density the direction was drawn by here.
+float surface_share(const RenderContext& context, const Vec3& normal, const Vec3& direction);
+
+/// What arrives of a contribution, given whether a ray of light_mask gets through and one of
+/// surface_mask.
+inline float arriving_share(const RenderContext& context, const Vec3& normal, const Vec3& direction,
+                            bool light_passes, bool surface_passes) {
+  if (light_passes == surface_passes) return light_passes ? 1.0f : 0.0f;
+  const float share = surface_share(context, normal, direction);
+  return surface_passes ? share : 1.0f - share;
+}
+
 /// The shadow ray of a light sample.
 Ray light_ray(const RenderContext& context, const SurfacePoint& point, const Hit& hit,
               const Vec3& direction, float time);

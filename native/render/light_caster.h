@@ -26,7 +26,8 @@ class LightCaster {
   RayTally tally() const { return tally_; }
 
   /// Calls visit(surface, direction, contribution, visible) for every ray of surfaces
-  /// [begin, end), at most block_size() of them, that could bring light, in the order drawn.
+  /// [begin, end), at most block_size() of them, that could bring light, in the order drawn; of one
+  /// that only some of Cycles' rays would see the share is left that these find.
   template <class Visit>
   void cast(const SurfaceBatch& surfaces, std::uint32_t begin, std::uint32_t end,
             const Visit& visit) {
@@ -35,9 +36,17 @@ class LightCaster {
     const std::uint64_t before = rays_;
     tally_.blocked += trace(surfaces, begin, end, context_.light_mask, kDrawn, kBlocked);
     tally_.cast += rays_ - before;
+    if (context_.surface_mask == 0) {
+      for_each_drawn(end - begin, [&](std::uint32_t p, std::uint32_t place) {
+        visit(begin + p, block_.direction(place), block_.contribution(place),
+              !(state_[place] & kBlocked));
+      });
+      return;
+    }
+    trace(surfaces, begin, end, context_.surface_mask, kDrawn, kSurfaceBlocked);
     for_each_drawn(end - begin, [&](std::uint32_t p, std::uint32_t place) {
-      visit(begin + p, block_.direction(place), block_.contribution(place),
-            !(state_[place] & kBlocked));
+      const float share = arriving(surfaces, begin + p, place, kBlocked, kSurfaceBlocked);
+      visit(begin + p, block_.direction(place), block_.contribution(place) * share, share > 0.0f);
     });
   }
 
@@ -48,26 +57,48 @@ class LightCaster {
                   const IsCatcher& is_catcher, const Visit& visit) {
     for_each_drawn(end - begin, [&](std::uint32_t p, std::uint32_t place) {
       // What nothing blocks, no catcher does.
-      if ((state_[place] & kBlocked) && is_catcher(begin + p)) state_[place] |= kAgain;
+      if ((state_[place] & (kBlocked | kSurfaceBlocked)) && is_catcher(begin + p)) {
+        state_[place] |= kAgain;
+      }
     });
     trace(surfaces, begin, end, context_.light_mask << kMaskCatcherShift, kAgain, kBlockedAgain);
+    const bool splits = context_.surface_mask != 0;
+    if (splits) {
+      trace(surfaces, begin, end, context_.surface_mask << kMaskCatcherShift, kAgain,
+            kSurfaceBlockedAgain);
+    }
     for_each_drawn(end - begin, [&](std::uint32_t p, std::uint32_t place) {
-      if (!is_catcher(begin + p) || (state_[place] & kBlockedAgain)) return;
-      visit(begin + p, block_.contribution(place));
+      if (!is_catcher(begin + p)) return;
+      if (!splits) {
+        if (!(state_[place] & kBlockedAgain)) visit(begin + p, block_.contribution(place));
+        return;
+      }
+      const float share = arriving(surfaces, begin + p, place, kBlockedAgain, kSurfaceBlockedAgain);
+      if (share > 0.0f) visit(begin + p, block_.contribution(place) * share);
     });
   }
 
  private:
   /// Of a ray: drawn with light to bring, lifted from its point, below its own triangle, blocked;
-  /// to be traced again among shadow catchers, blocked by one.
+  /// to be traced again among shadow catchers, blocked by one; the same for what blocks the rays of
+  /// surface_mask.
   enum State : std::uint8_t {
     kDrawn = 1,
     kLifted = 2,
     kBelow = 4,
     kBlocked = 8,
     kAgain = 16,
-    kBlockedAgain = 32
+    kBlockedAgain = 32,
+    kSurfaceBlocked = 64,
+    kSurfaceBlockedAgain = 128
   };
+
+  /// arriving_share of a ray, given the bits that say what blocks it.
+  float arriving(const SurfaceBatch& surfaces, std::uint32_t surface, std::uint32_t place,
+                 std::uint8_t blocked, std::uint8_t surface_blocked) const {
+    return arriving_share(context_, surfaces.normal(surface), block_.direction(place),
+                          !(state_[place] & blocked), !(state_[place] & surface_blocked));
+  }
 
   /// Calls visit(point, place) in the order drawn.
   template <class Visit>

@@ -42,7 +42,8 @@ PixelSample missed(const RenderContext& context, const Vec3& direction, float t_
 
 namespace {
 
-/// Calls visit(drawn, visible) for the rays that could bring light to a point.
+/// Calls visit(drawn, visible) for the rays that could bring light to a point; of one that only
+/// some of Cycles' rays would see the share is left that these find.
 template <class Visit>
 void for_each_light_ray(const RenderContext& context, const SurfacePoint& point, const Hit& hit,
                         const Sampler& sampler, std::uint32_t sample, float time,
@@ -62,7 +63,15 @@ void for_each_light_ray(const RenderContext& context, const SurfacePoint& point,
       // What lies below its own triangle has to pass over its edge.
       if (!(geometric_cosine > 0.0f)) ray.self_instance = ray.self_primitive = kNone;
     }
-    visit(drawn, !occluded_scalar(context.scene, ray));
+    bool visible = !occluded_scalar(context.scene, ray);
+    if (context.surface_mask != 0) {
+      ray.mask = context.surface_mask;
+      const float arriving = arriving_share(context, point.normal, drawn.direction, visible,
+                                            !occluded_scalar(context.scene, ray));
+      drawn.contribution *= arriving;
+      visible = arriving > 0.0f;
+    }
+    visit(drawn, visible);
   }
 }
 
@@ -71,6 +80,7 @@ Vec3 light_alone(const RenderContext& given, const SurfacePoint& point, const Hi
                  const Sampler& sampler, std::uint32_t sample, float time) {
   RenderContext context = given;
   context.light_mask <<= kMaskCatcherShift;
+  context.surface_mask <<= kMaskCatcherShift;
   Vec3 radiance(0.0f);
   for_each_light_ray(context, point, hit, sampler, sample, time,
                      [&](const LightSample& drawn, bool visible) {

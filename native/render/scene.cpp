@@ -85,7 +85,10 @@ void Scene::add_instances(std::span<const InstanceInput> instances, const std::s
   if (inputs_.size() + instances.size() >= kNone) {
     throw std::invalid_argument("more instances than 32-bit indices can count");
   }
-  for (const InstanceInput& i : instances) has_catchers_ |= (i.flags & kInstanceShadowCatcher) != 0;
+  for (const InstanceInput& i : instances) {
+    has_catchers_ |= (i.flags & kInstanceShadowCatcher) != 0;
+    splits_light_rays_ |= !(i.mask & kMaskDiffuse) != !(i.mask & kMaskShadow);
+  }
   inputs_.insert(inputs_.end(), instances.begin(), instances.end());
 }
 

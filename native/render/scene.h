@@ -68,6 +68,8 @@ class Scene {
   const SceneTables& tables() const { return tables_; }
   /// Whether an instance is a shadow catcher: known when the instances are.
   bool has_catchers() const { return has_catchers_; }
+  /// Whether an instance is seen by one alone of diffuse and shadow rays; known as early.
+  bool splits_light_rays() const { return splits_light_rays_; }
   /// Whether everything is taken at rest (ShutterDesc::still), and the next two say what moves.
   bool is_still() const { return has_camera_ && camera_desc_.shutter.still; }
   const FilmSteps& film_steps() const { return film_steps_; }
@@ -111,6 +113,7 @@ class Scene {
   bool committed_ = false;
   bool has_camera_ = false;
   bool has_catchers_ = false;
+  bool splits_light_rays_ = false;
   std::vector<std::shared_ptr<const Mesh>> meshes_;
   std::vector<InstanceInput> inputs_;
   std::vector<MovingInput> moving_inputs_;

@@ -84,7 +84,7 @@ bool measure_sky_visibility(const RenderContext& given, ThreadPool& pool, const 
     RayBatch camera_rays;
     BundleBatch batch;
     std::vector<Hit> hits;
-    std::vector<std::uint32_t> bits;
+    std::vector<std::uint32_t> bits, more_bits;
     std::vector<Vec3> normals;
     for (std::size_t row = begin; row < end && !cancel.raised(); ++row) {
       const std::uint32_t y = grid.y(static_cast<std::uint32_t>(row));
@@ -113,6 +113,13 @@ bool measure_sky_visibility(const RenderContext& given, ThreadPool& pool, const 
       const RayBundles bundles = batch.bundles(context.light_mask);
       bits.resize((bundles.ray_count() + 31) / 32);
       occluded(context.scene, bundles, bits.data());
+      if (context.surface_mask != 0) {  // light comes where either of Cycles' kinds of rays does
+        RayBundles of_surface = bundles;
+        of_surface.mask = context.surface_mask;
+        more_bits.resize(bits.size());
+        occluded(context.scene, of_surface, more_bits.data());
+        for (std::size_t i = 0; i < bits.size(); ++i) bits[i] &= more_bits[i];
+      }
       for (std::uint32_t i = 0; i < bundles.ray_count(); ++i) {
         const Vec3 direction(bundles.direction_x[i], bundles.direction_y[i],
                              bundles.direction_z[i]);

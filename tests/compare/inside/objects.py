@@ -41,11 +41,8 @@ def terminators_off() -> None:
 
 
 def visible_alike() -> list[str]:
-    """Makes visibility to shadow and diffuse rays the same where the engines ask different ones.
-
-    Under an even sky Cycles sends diffuse rays alone, but ambient occlusion asks who casts shadows;
-    under a map Cycles weights both.
-    """
+    """Makes visibility to shadow and diffuse rays the same, for ambient occlusion: under an even sky
+    Cycles sends diffuse rays alone, but ambient occlusion asks who casts shadows."""
     mixed = [t for t in bpy.data.objects if t.visible_diffuse != t.visible_shadow]
     for thing in mixed:
         settle(thing, "visible_diffuse", thing.visible_shadow)

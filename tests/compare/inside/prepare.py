@@ -41,7 +41,6 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
     notes += world.set_world(scene, job["mode"], job["world_image"])
     if job["mode"] == "ao":
         objects.terminators_off()
-    if job["mode"] == "ao" or not world.is_even(scene.world):
         notes += objects.visible_alike()
     scene.frame_set(scene.frame_current)  # the camera bound to a marker, and all drivers
     depsgraph = layer.depsgraph

@@ -129,11 +129,6 @@ def set_world(scene: Any, mode: str, picture: str | None) -> list[str]:
     return tidy(scene.world)
 
 
-def is_even(world: Any) -> bool:
-    """Whether a world that was set has the same radiance everywhere."""
-    return not world.use_nodes or all(n.type != "TEX_ENVIRONMENT" for n in world.node_tree.nodes)
-
-
 def tidy(world: Any) -> list[str]:
     """Undo what a kept world has beside its light: volume, ray visibility, unusual
     interpolation."""
