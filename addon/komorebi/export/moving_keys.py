@@ -52,7 +52,8 @@ class MovingKeys:
             return
         self._set_positions(np.stack([keys.positions for keys in seen]), is_open)
         radii = np.stack([keys.radii for keys in seen])
-        if is_open and (radii != self.data.radii).any():
+        # They are worked out anew at each time, and round otherwise.
+        if is_open and not np.allclose(radii, self.data.radii, rtol=1e-4, atol=0.0):
             self.data.motion_radii = radii
 
     def set_key(self) -> None:
