@@ -11,8 +11,8 @@ from common import add_box, add_camera, add_mesh, add_sphere, empty_scene, link,
 from deforming import column
 from features import ground
 from instancing import wedge
-from mathutils import Vector
-from strands import chain, node_tree
+from mathutils import Matrix, Vector
+from strands import add_hair, chain, node_tree
 
 FRAME = 10
 
@@ -99,6 +99,26 @@ def motion_objects() -> None:
     set_world()
 
 
+def bent_column(name: str, x: float, y: float) -> bpy.types.Object:
+    """A column of which a bone turns the upper half about its axis."""
+    bent = column(name, x, y)
+    rig = link(bpy.data.objects.new("Bones", bpy.data.armatures.new("Bones")))
+    rig.location = bent.location
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.mode_set(mode="EDIT")
+    bone = rig.data.edit_bones.new("Upper")
+    bone.head, bone.tail = (0.0, 0.0, 0.8), (0.0, 0.0, 1.6)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    pose = rig.pose.bones["Upper"]
+    pose.rotation_mode = "XYZ"
+    for frame, angle in ((FRAME - 1, -1.2), (FRAME + 2, 2.4)):
+        pose.rotation_euler = (0.0, 0.0, angle)
+        pose.keyframe_insert("rotation_euler", frame=frame)
+    bent.vertex_groups.new(name="Upper").add(list(range(16, 36)), 1.0, "REPLACE")
+    bent.modifiers.new("Armature", "ARMATURE").object = rig
+    return bent
+
+
 def motion_deforming() -> None:
     """A mesh that shape keys bend in nine steps while it passes, one that bones bend (smooth), one
     whose deformation is switched off, one with velocities, one whose faces change in number; the
@@ -116,22 +136,8 @@ def motion_deforming() -> None:
         lean.keyframe_insert("value", frame=frame)
     key(leaning, "location", {FRAME - 1: (-2.2, 0.2, 0.0), FRAME + 1: (-1.4, 0.2, 0.0)})
 
-    bent = column("Bent", -0.1, 0.3)
+    bent = bent_column("Bent", -0.1, 0.3)
     bent.data.polygons.foreach_set("use_smooth", [True] * len(bent.data.polygons))
-    rig = link(bpy.data.objects.new("Bones", bpy.data.armatures.new("Bones")))
-    rig.location = bent.location
-    bpy.context.view_layer.objects.active = rig
-    bpy.ops.object.mode_set(mode="EDIT")
-    bone = rig.data.edit_bones.new("Upper")
-    bone.head, bone.tail = (0.0, 0.0, 0.8), (0.0, 0.0, 1.6)
-    bpy.ops.object.mode_set(mode="OBJECT")
-    pose = rig.pose.bones["Upper"]
-    pose.rotation_mode = "XYZ"
-    for frame, angle in ((FRAME - 1, -1.2), (FRAME + 2, 2.4)):
-        pose.rotation_euler = (0.0, 0.0, angle)
-        pose.keyframe_insert("rotation_euler", frame=frame)
-    bent.vertex_groups.new(name="Upper").add(list(range(16, 36)), 1.0, "REPLACE")
-    bent.modifiers.new("Armature", "ARMATURE").object = rig
 
     stiff = column("Stiff", 0.9, 0.6)
     stiff.cycles.use_deform_motion = False
@@ -161,6 +167,86 @@ def motion_deforming() -> None:
     scene.frame_set(FRAME)
     add_camera((0.1, -5.6, 2.2), (0.05, 0.2, 0.6), lens=35.0)
     set_world()
+
+
+def motion_strands() -> None:
+    """Hair with children on a mesh that bones bend, in five steps; hair on one that a shape key
+    bends, hair that passes as it is, and hair of which the deformation is switched off; hair curves
+    that nodes bend; a point cloud with velocities."""
+    scene = moving_scene(shutter=0.8)
+    ground()
+    bent = bent_column("Bent", -1.9, 0.3)
+    bent.cycles.motion_steps = 2
+    long = add_hair(bent, "Long", 60, 0.4)
+    long.child_type, long.rendered_child_count = "INTERPOLATED", 6
+    long.radius_scale, long.tip_radius = 0.03, 0.3
+
+    def swelling(name: str, x: float) -> bpy.types.Object:
+        ball = add_sphere(name, 0.25, (x, 0.3, 0.5), level=3)
+        ball.shape_key_add(name="Basis")
+        swell = ball.shape_key_add(name="Swell")
+        for point in swell.data:
+            point.co.x += 0.7 * point.co.z + 0.2
+            point.co.z *= 1.5
+        for frame, value in ((FRAME - 1, 0.0), (FRAME + 1, 1.0)):
+            swell.value = value
+            swell.keyframe_insert("value", frame=frame)
+        fur = add_hair(ball, "Fur", 250, 0.2)
+        fur.radius_scale, fur.tip_radius = 0.02, 0.5
+        return ball
+
+    swelling("Swelling", -0.9)
+    swelling("Stiff", 0.1).cycles.use_deform_motion = False
+    passing = add_sphere("Passing", 0.2, (0.0, -1.2, 0.2), level=3)
+    key(passing, "location", {FRAME - 1: (-0.5, -1.2, 0.2), FRAME + 1: (0.1, -1.2, 0.2)})
+    add_hair(passing, "Whole", 150, 0.15).radius_scale = 0.02
+
+    bpy.ops.object.curves_random_add()
+    wild = bpy.context.object
+    wild.name, wild.matrix_world = (
+        "Wild",
+        Matrix.Translation((1.2, 0.4, 0.5)) @ Matrix.Scale(0.5, 4),
+    )
+    tree = node_tree(wild)
+    bend, radius = chain(tree, "GeometryNodeSetPosition", "GeometryNodeSetCurveRadius")
+    radius.inputs["Radius"].default_value = 0.012
+    place, apart = (
+        tree.nodes.new("GeometryNodeInputPosition"),
+        tree.nodes.new("ShaderNodeSeparateXYZ"),
+    )
+    times, offset = tree.nodes.new("ShaderNodeMath"), tree.nodes.new("ShaderNodeCombineXYZ")
+    times.operation = "MULTIPLY"
+    for output, to in (
+        (place.outputs[0], apart.inputs[0]), (apart.outputs["Z"], times.inputs[0]),
+        (times.outputs[0], offset.inputs["X"]), (offset.outputs[0], bend.inputs["Offset"]),
+    ):  # fmt: skip
+        tree.links.new(output, to)
+    key(times.inputs[1], "default_value", {FRAME - 1: -1.0, FRAME + 1: 1.0})
+
+    cloud = add_sphere("Cloud", 0.4, (2.2, 0.2, 0.8), level=3)
+    tree = node_tree(cloud)
+    spread, radius, store = chain(
+        tree, "GeometryNodeDistributePointsOnFaces", "GeometryNodeSetPointRadius",
+        "GeometryNodeStoreNamedAttribute",
+    )  # fmt: skip
+    spread.inputs["Density"].default_value = 60.0
+    radius.inputs["Radius"].default_value = 0.03
+    store.data_type, store.domain = "FLOAT_VECTOR", "POINT"
+    store.inputs["Name"].default_value = "velocity"
+    place, fast = (
+        tree.nodes.new("GeometryNodeInputPosition"),
+        tree.nodes.new("ShaderNodeVectorMath"),
+    )
+    fast.operation = "SCALE"
+    fast.inputs["Scale"].default_value = 0.8 * scene.render.fps
+    tree.links.new(place.outputs[0], fast.inputs[0])
+    tree.links.new(
+        fast.outputs[0], next(i for i in store.inputs if i.name == "Value" and i.enabled)
+    )
+    scene.frame_set(FRAME)
+    add_camera((0.1, -5.6, 2.2), (0.05, 0.2, 0.6), lens=35.0)
+    set_world()
+    scene.cycles_curves.shape = "RIBBONS"
 
 
 def motion_particles() -> None:
@@ -249,5 +335,8 @@ def motion_rolling() -> None:
 
 SCENES: dict[str, Callable[[], None]] = {
     f.__name__: f
-    for f in (motion_objects, motion_deforming, motion_particles, motion_camera, motion_rolling)
-}
+    for f in (
+        motion_objects, motion_deforming, motion_strands, motion_particles, motion_camera,
+        motion_rolling,
+    )
+}  # fmt: skip

@@ -40,11 +40,13 @@ def find(name: str, key: MeshKey) -> KnownShape | None:
 
 def round_key(core: Any, data: CurveData | PointData) -> MeshKey:
     """The key of curves or points; of shading they have no more than what passes tell."""
+    places = (data.positions, data.radii, data.motion_positions, data.motion_radii)
     if isinstance(data, CurveData):
         kind = f"curves {data.shape} {data.subdivisions}".encode()
-        geometry = kind + digest(core, (data.positions, data.radii, data.curve_offsets))
-        return MeshKey(geometry, digest(core, (data.curve_materials, data.curve_uvs)))
-    return MeshKey(b"points" + digest(core, (data.positions, data.radii)), b"")
+        geometry = kind + digest(core, (*places, data.curve_offsets))
+        shading = (data.curve_materials, data.curve_uvs, data.step_positions)
+        return MeshKey(geometry, digest(core, shading))
+    return MeshKey(b"points" + digest(core, places), digest(core, (data.step_positions,)))
 
 
 def digest(core: Any, arrays: Iterable[NDArray[Any] | None], threads: int = 0) -> bytes:

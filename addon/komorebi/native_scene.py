@@ -147,12 +147,16 @@ def _native_mesh(
         return core.Mesh.from_curves(
             mesh.name, mesh.positions, mesh.radii, mesh.curve_offsets, shape=mesh.shape,
             subdivisions=mesh.subdivisions, curve_materials=mesh.curve_materials,
-            curve_uvs=mesh.curve_uvs, builder=builder, threads=threads, cancel=cancel,
+            curve_uvs=mesh.curve_uvs, motion_positions=mesh.motion_positions,
+            motion_radii=mesh.motion_radii, step_positions=mesh.step_positions,
+            builder=builder, threads=threads, cancel=cancel,
         )  # fmt: skip
     if isinstance(mesh, PointData):
         return core.Mesh.from_points(
-            mesh.name, mesh.positions, mesh.radii, builder=builder, threads=threads, cancel=cancel
-        )
+            mesh.name, mesh.positions, mesh.radii, motion_positions=mesh.motion_positions,
+            motion_radii=mesh.motion_radii, step_positions=mesh.step_positions,
+            builder=builder, threads=threads, cancel=cancel,
+        )  # fmt: skip
     return core.Mesh(
         mesh.name, mesh.positions, mesh.corner_verts, mesh.face_offsets,
         tri2corner=mesh.tri2corner, tri2face=mesh.tri2face, corner_normals=mesh.corner_normals,

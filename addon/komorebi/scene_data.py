@@ -68,6 +68,10 @@ class CurveData:
     subdivisions: int = 2  # a ribbon's segment is drawn by 2 ** subdivisions + 1 pieces
     curve_materials: IntArray | None = None  # [curves], material slots; None: all the first
     curve_uvs: FloatArray | None = None  # [curves, 2]; None: no UV map, or no pass that shows it
+    # As of MeshData, keys in place of vertices.
+    motion_positions: FloatArray | None = None  # [2k, keys, 3]
+    motion_radii: FloatArray | None = None  # [2k, keys]; None: always the same
+    step_positions: FloatArray | None = None  # [2, keys, 3]
     key: MeshKey | None = None
 
     @property
@@ -82,6 +86,10 @@ class PointData:
     name: str
     positions: FloatArray  # [points, 3]
     radii: FloatArray  # [points], not negative
+    # As of MeshData, points in place of vertices.
+    motion_positions: FloatArray | None = None  # [2k, points, 3]
+    motion_radii: FloatArray | None = None  # [2k, points]; None: always the same
+    step_positions: FloatArray | None = None  # [2, points, 3]
     key: MeshKey | None = None
 
     @property

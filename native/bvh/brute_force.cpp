@@ -34,7 +34,8 @@ Hit test_everything(const SceneView& scene, const Ray& ray) {
       continue;
     }
     if (is_round(mesh.kind)) {
-      const RoundRay round = make_round_ray(local, local_direction(instance, ray));
+      const RoundRay round =
+          make_round_ray(local, local_direction(instance, ray), round_time(mesh, ray.time));
       for (std::uint32_t i = 0; i < mesh.primitive_count * mesh.segment_parts; ++i) {
         const bool found = test_round_item(mesh, round, self, index, i, &closest);
         if (kAny && found) return closest.hit;

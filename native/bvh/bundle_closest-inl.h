@@ -84,11 +84,12 @@ HWY_INLINE void walk_closest(const TreeView& tree, const Bundle& bundle, const B
 HWY_NOINLINE std::uint32_t find_in_round(const MeshView& mesh, std::uint32_t instance,
                                          const LocalBundle& bundle, std::uint32_t rays,
                                          Nearest& nearest) {
-  const RoundRays round(bundle, rays);
+  const RoundRays round(mesh, bundle, rays);
   std::uint32_t all_found = 0;
+  TimeTree tree;
   const auto visit = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
     const std::uint32_t found =
-        round.meet(mesh, instance, leaf, active,
+        round.meet(mesh, instance, tree.leaves[leaf], active,
                    [&](std::uint32_t i) HWY_ATTR { return &nearest.closest[i]; });
     for (std::uint32_t left = found; left != 0; left &= left - 1) {
       const auto i = static_cast<std::uint32_t>(__builtin_ctz(left));
@@ -97,10 +98,10 @@ HWY_NOINLINE std::uint32_t find_in_round(const MeshView& mesh, std::uint32_t ins
     all_found |= found;
     return found;
   };
-  const auto address = [&](std::uint32_t child) HWY_ATTR { return round_child(mesh, child); };
+  const auto address = [&](std::uint32_t child) HWY_ATTR { return round_child(tree, child); };
   while (rays != 0) {
-    const std::uint32_t now = same_octant(bundle.slab, rays);
-    walk_closest(mesh.tree, bundle.rays, bundle.slab, now, nearest, visit, address);
+    const std::uint32_t now = same_octant(bundle.slab, round.same_time(rays, tree));
+    walk_closest(tree.tree, bundle.rays, bundle.slab, now, nearest, visit, address);
     rays &= ~now;
   }
   return all_found;

@@ -104,18 +104,20 @@ struct Turn {
 /// Rays of `bundle` that a set of curves or points blocks.
 HWY_NOINLINE std::uint32_t walk_round(const MeshView& mesh, std::uint32_t instance,
                                       const LocalBundle& bundle, std::uint32_t rays) {
-  const RoundRays round(bundle, rays);
+  const RoundRays round(mesh, bundle, rays);
   Closest any;
+  TimeTree tree;
   const auto visit = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
-    return round.meet(mesh, instance, leaf, active, [&](std::uint32_t) { return &any; });
+    return round.meet(mesh, instance, tree.leaves[leaf], active,
+                      [&](std::uint32_t) { return &any; });
   };
-  const auto address = [&](std::uint32_t child) HWY_ATTR { return round_child(mesh, child); };
+  const auto address = [&](std::uint32_t child) HWY_ATTR { return round_child(tree, child); };
   std::uint32_t found = 0;
-  while (rays != 0) {  // all at once unless the instance is turned
-    const std::uint32_t now = same_octant(bundle.slab, rays);
+  while (rays != 0) {  // all at once unless the instance is turned or the set deforms
+    const std::uint32_t now = same_octant(bundle.slab, round.same_time(rays, tree));
     const WalkingRays walking(bundle.slab, now);
     const Reach reach(walking, bundle.rays, now);
-    found |= walk_bundle(mesh.tree, walking, reach, now, visit, address);
+    found |= walk_bundle(tree.tree, walking, reach, now, visit, address);
     rays &= ~now;
   }
   return found;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bvh/closest.h"
+#include "bvh/time_parts.h"
 #include "core/moving_triangle.h"
 
 namespace komorebi {
@@ -11,11 +12,5 @@ namespace komorebi {
 bool test_moving_triangle(const MeshView& mesh, const LocalRay& local, const SetPlace& place,
                           std::uint32_t self, std::uint32_t instance, std::uint32_t triangle,
                           Closest* closest);
-
-/// The tree of the ray's time.
-inline const TimeTree& tree_at(const MeshView& mesh, float time) {
-  const MotionPlace place = motion_place(mesh.time_tree_count + 1, static_cast<double>(time));
-  return mesh.time_trees[place.step];
-}
 
 }  // namespace komorebi

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bvh/time_parts.h"
 #include "bvh/wide_tree.h"
 #include "core/moving_triangle.h"
 #include "core/triangle.h"
@@ -10,61 +11,28 @@
 namespace komorebi {
 namespace {
 
-constexpr std::uint32_t kMostParts = 16;
-constexpr double kWorthGrowth = 2.0;
-constexpr std::size_t kSampled = 1 << 13;  ///< triangles that the number of parts is chosen by
-
 Aabb hull(const Corners& at) {
   Aabb box;
   for (const Vec3& p : at.corner) box = united(box, Aabb{p, p});
   return box;
 }
 
-/// Positions in time, and the boxes of triangles over a part of it.
-struct Sets {
-  MeshView mesh;  ///< positions and triangles alone
+Aabb hull(const MeshView& mesh, std::size_t triangle, const MotionPlace& place) {
+  return hull(moving_triangle(mesh, triangle, {place.step, static_cast<float>(place.fraction)}));
+}
 
-  /// Contains the padded box of the triangle at every time of part `k` of `parts`. Between two sets
-  /// corners move on straight lines; what the fraction and the sum of the two round is relative to
-  /// the sets' coordinates, and less than the padding again.
-  Aabb box(std::size_t triangle, std::uint32_t k, std::uint32_t parts) const {
-    const std::uint32_t last = mesh.position_sets - 1;
-    const std::uint32_t first_set = k * last / parts;
-    const std::uint32_t end_set = ((k + 1) * last + parts - 1) / parts;
-    Aabb box, sets;
-    for (std::uint32_t set = first_set; set <= end_set; ++set) {
-      const Aabb at = hull(moving_triangle(mesh, triangle, on(set)));
-      sets = united(sets, at);
-      const bool within = set * parts >= k * last && set * parts <= (k + 1) * last;
-      if (within) box = united(box, at);
-    }
-    box = united(box, hull(moving_triangle(mesh, triangle, begin_of(k, parts))));
-    box = united(box, hull(moving_triangle(mesh, triangle, begin_of(k + 1, parts))));
-    return padded(box, 2.0f * (max_abs(sets) * kPadding));
+/// Contains the padded box of the triangle at every time of a part. Between two sets corners move
+/// on straight lines; what the fraction and the sum of the two round is relative to the sets'
+/// coordinates, and less than the padding again.
+Aabb box_over(const MeshView& mesh, std::size_t triangle, const TimePart& part) {
+  Aabb box, sets;
+  for (const MotionPlace& place : part.times) box = united(box, hull(mesh, triangle, place));
+  for (std::uint32_t set = part.first_set; set <= part.last_set; ++set) {
+    const bool is_last = set + 1 == mesh.position_sets;
+    sets = united(sets, hull(mesh, triangle, {is_last ? set - 1 : set, is_last ? 1.0 : 0.0}));
   }
-
-  /// Mean area of boxes over that of triangles' own.
-  double growth(std::uint32_t parts) const {
-    const std::size_t count = mesh.triangle_count, step = count / kSampled + 1;
-    double swept = 0.0, own = 0.0;
-    for (std::size_t t = 0; t < count; t += step) {
-      for (std::uint32_t k = 0; k < parts; ++k) {
-        swept += double(half_area(box(t, k, parts)));
-        own += double(half_area(hull(moving_triangle(mesh, t, begin_of(k, parts)))));
-      }
-    }
-    return own > 0.0 ? swept / own : 1.0;
-  }
-
- private:
-  SetPlace on(std::uint32_t set) const {
-    return set + 1 < mesh.position_sets ? SetPlace{set, 0.0f} : SetPlace{set - 1, 1.0f};
-  }
-  SetPlace begin_of(std::uint32_t k, std::uint32_t parts) const {
-    const MotionPlace place = motion_place(mesh.position_sets, double(k) / parts);
-    return {place.step, static_cast<float>(place.fraction)};
-  }
-};
+  return padded(box, 2.0f * (max_abs(sets) * kPadding));
+}
 
 }  // namespace
 
@@ -92,21 +60,24 @@ MovingTree build_moving_tree(std::span<const float> positions, std::uint32_t set
                              std::span<const std::uint32_t> tri2vtx, Builder builder,
                              ThreadPool& pool, const Cancel& cancel) {
   constexpr std::size_t kGrain = 1 << 13;
-  Sets in;
-  in.mesh.position_sets = sets;
-  in.mesh.vertex_count = static_cast<std::uint32_t>(positions.size() / 3 / sets);
-  in.mesh.triangle_count = static_cast<std::uint32_t>(tri2vtx.size() / 3);
-  in.mesh.vtx2xyz = positions.data();
-  in.mesh.tri2vtx = tri2vtx.data();
-  std::uint32_t parts = 1;
-  while (parts < kMostParts && in.growth(parts) > kWorthGrowth) parts *= 2;
+  MeshView mesh;  // positions and triangles alone
+  mesh.position_sets = sets;
+  mesh.vertex_count = static_cast<std::uint32_t>(positions.size() / 3 / sets);
+  mesh.triangle_count = static_cast<std::uint32_t>(tri2vtx.size() / 3);
+  mesh.vtx2xyz = positions.data();
+  mesh.tri2vtx = tri2vtx.data();
+  const std::uint32_t parts = count_time_parts(
+      mesh.triangle_count, sets,
+      [&](std::size_t i, const TimePart& part) { return box_over(mesh, i, part); },
+      [&](std::size_t i, const MotionPlace& place) { return hull(mesh, i, place); });
 
   MovingTree tree;
-  Array<Aabb> boxes(in.mesh.triangle_count);
+  Array<Aabb> boxes(mesh.triangle_count);
   for (std::uint32_t k = 0; k < parts; ++k) {
+    const TimePart part = time_part(sets, k, parts);
     pool.for_each_chunk(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       check(cancel);
-      for (std::size_t i = begin; i < end; ++i) boxes[i] = in.box(i, k, parts);
+      for (std::size_t i = begin; i < end; ++i) boxes[i] = box_over(mesh, i, part);
     });
     WideTree wide = build_wide_tree({{}, {}, boxes, {1, kNone}}, builder, pool, cancel);
     tree.bounds = united(tree.bounds, wide.bounds);

@@ -15,9 +15,9 @@ namespace komorebi {
 /// hold a triangle for all of that part. Leaves are single triangles, whose corners are read from
 /// the sets of positions.
 ///
-/// There are as many (1, 2, 4 … 16) as it takes for those boxes to have on average no more than
-/// twice the area of a triangle's own, which costs a ray about as much again; a tree is some twenty
-/// bytes a triangle, less than a set of positions and its normals.
+/// There are as many as count_time_parts finds worth it: a box of twice a triangle's own area costs
+/// a ray about as much again, and a tree is some twenty bytes a triangle, less than a set of
+/// positions and its normals.
 struct MovingTree {
   struct Part {
     LateArray<WideNode> nodes;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bvh/closest.h"
+#include "bvh/time_parts.h"
 #include "core/round_leaf.h"
 
 namespace komorebi {
@@ -24,10 +25,15 @@ inline bool test_round_item(const MeshView& mesh, const RoundRay& ray, std::uint
 
 /// The same with a leaf of the tree.
 inline bool test_round_leaf(const MeshView& mesh, const RoundRay& ray, std::uint32_t self,
-                            std::uint32_t instance, std::uint32_t leaf, Closest* closest) {
-  const RoundLeaf& its = mesh.leaves[leaf];
-  if (misses_leaf(mesh.leaf_grid, its, ray)) return false;
-  return test_round_item(mesh, ray, self, instance, its.item, its.entry, closest);
+                            std::uint32_t instance, const RoundLeaf& leaf, Closest* closest) {
+  if (misses_leaf(mesh.leaf_grid, leaf, ray)) return false;
+  return test_round_item(mesh, ray, self, instance, leaf.item, leaf.entry, closest);
+}
+
+/// The tree of a time.
+inline TimeTree round_tree_at(const MeshView& mesh, float time) {
+  if (mesh.position_sets == 1) return {mesh.tree, nullptr, mesh.leaves};
+  return tree_at(mesh, time);
 }
 
 }  // namespace komorebi

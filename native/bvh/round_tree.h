@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "bvh/topology.h"
 #include "bvh/wide_node.h"
 #include "core/round_leaf.h"
@@ -11,15 +13,22 @@
 namespace komorebi {
 
 /// A set of curves or points as traversal reads it: wide nodes whose leaves are each one item
-/// (CurveItem, or a point). Keys and points are read where they are.
+/// (CurveItem, or a point). Keys and points are read where they are. Of a set that deforms there
+/// is such a tree for each of some even parts of the shutter's time (count_time_parts), whose boxes
+/// and capsules hold an item for all of that part.
 struct RoundTree {
-  LateArray<WideNode> nodes;
-  Array<RoundLeaf> leaves;
+  struct Part {
+    LateArray<WideNode> nodes;
+    Array<RoundLeaf> leaves;
+    std::uint32_t depth = 0;
+  };
+  std::vector<Part> parts;      ///< one, if nothing moves
+  std::vector<TimeTree> views;  ///< of them
   LeafGrid grid;
-  std::uint32_t depth = 0;
   Aabb bounds;  ///< of all padded boxes, local space; empty if there is nothing to hit
 
-  TreeView view() const;
+  std::size_t node_count() const;
+  std::uint32_t depth() const;
   std::size_t byte_count() const;
 };
 

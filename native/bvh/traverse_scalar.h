@@ -54,13 +54,14 @@ bool walk(const TreeView& tree, const SlabRay& slab, Interval range, const float
 template <bool kAny>
 bool trace_round(const MeshView& mesh, std::uint32_t instance, const LocalRay& local,
                  const Vec3& direction, const Ray& ray, Closest* closest) {
-  const RoundRay round = make_round_ray(local, direction);
+  const TimeTree tree = round_tree_at(mesh, ray.time);
+  const RoundRay round = make_round_ray(local, direction, round_time(mesh, ray.time));
   const std::uint32_t self = instance == ray.self_instance ? ray.self_primitive : kNone;
   const auto visit = [&](std::uint32_t leaf) {
-    const bool found = test_round_leaf(mesh, round, self, instance, leaf, closest);
+    const bool found = test_round_leaf(mesh, round, self, instance, tree.leaves[leaf], closest);
     return kAny && found;
   };
-  return walk(mesh.tree, local.slab, local.range, closest->limit, visit);
+  return walk(tree.tree, local.slab, local.range, closest->limit, visit);
 }
 
 /// The same of a mesh that deforms.

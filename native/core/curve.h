@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/round_key.h"
 #include "core/round_ray.h"
 #include "core/scene_view.h"
 
@@ -39,21 +40,6 @@ inline constexpr std::uint32_t kLastOfCurve = 1u << 30;
 inline constexpr std::uint32_t kKeyMask = kLastOfCurve - 1;  ///< also the most keys that a set has
 /// Pieces of a thick segment; whoever looks at it sees none of them.
 inline constexpr std::uint32_t kThickPieces = 4;
-
-/// x, y, z and radius.
-struct Vec4d {
-  Vec3d at;
-  double radius;
-};
-inline Vec4d operator+(const Vec4d& a, const Vec4d& b) {
-  return {a.at + b.at, a.radius + b.radius};
-}
-inline Vec4d operator-(const Vec4d& a, const Vec4d& b) {
-  return {a.at - b.at, a.radius - b.radius};
-}
-inline Vec4d operator*(double s, const Vec4d& a) {
-  return {s * a.at, s * a.radius};
-}
 
 /// One segment as a cubic in Hermite's form.
 struct CurveSegment {
@@ -98,35 +84,29 @@ inline CurveSegment make_straight_segment(const Vec4d& begin, const Vec4d& end) 
   return {begin, end, chord, chord, 0.0 * chord, 0.0 * chord};
 }
 
-namespace detail {
-
-inline Vec4d curve_key(const MeshView& mesh, std::uint32_t key) {
-  const float* k = mesh.points + 4 * std::size_t{key};
-  return {Vec3d(k[0], k[1], k[2]), double(k[3])};
-}
-
-/// The four keys that a segment depends on, handed through `map`.
+/// A segment from the four keys that it depends on, which `key_at` gives.
 /// @param entry  of segment2key
-template <class Map>
-CurveSegment mapped_segment(const MeshView& mesh, std::uint32_t entry, const Map& map) {
+template <class KeyAt>
+CurveSegment segment_of_keys(CurveShape shape, std::uint32_t entry, const KeyAt& key_at) {
   const std::uint32_t key = entry & kKeyMask;
-  const Vec4d begin = map(curve_key(mesh, key)), end = map(curve_key(mesh, key + 1));
-  if (mesh.shape == CurveShape::kThickLinear) return make_straight_segment(begin, end);
-  const Vec4d before = entry & kFirstOfCurve ? begin : map(curve_key(mesh, key - 1));
-  const Vec4d after = entry & kLastOfCurve ? end : map(curve_key(mesh, key + 2));
+  const Vec4d begin = key_at(key), end = key_at(key + 1);
+  if (shape == CurveShape::kThickLinear) return make_straight_segment(begin, end);
+  const Vec4d before = entry & kFirstOfCurve ? begin : key_at(key - 1);
+  const Vec4d after = entry & kLastOfCurve ? end : key_at(key + 2);
   return make_segment(before, begin, end, after);
 }
 
-}  // namespace detail
-
-inline CurveSegment curve_segment(const MeshView& mesh, std::uint32_t entry) {
-  return detail::mapped_segment(mesh, entry, [](const Vec4d& key) { return key; });
+inline CurveSegment curve_segment(const MeshView& mesh, std::uint32_t entry,
+                                  const MotionPlace& time) {
+  return segment_of_keys(mesh.shape, entry,
+                         [&](std::uint32_t key) { return round_key(mesh, key, time); });
 }
 
 /// The segment as `ray` sees it: x and y across, z along.
 inline CurveSegment seen_segment(const MeshView& mesh, std::uint32_t entry, const RoundRay& ray) {
-  return detail::mapped_segment(mesh, entry, [&](const Vec4d& key) {
-    return Vec4d{ray.seen(key.at), key.radius};
+  return segment_of_keys(mesh.shape, entry, [&](std::uint32_t key) {
+    const Vec4d at = round_key(mesh, key, ray.time);
+    return Vec4d{ray.seen(at.at), at.radius};
   });
 }
 
@@ -153,9 +133,11 @@ inline double piece_begin(const MeshView& mesh, std::uint32_t i) {
   return i == mesh.pieces ? 1.0 : double(i) / double(mesh.pieces);
 }
 
-/// The padded box of an item, which decides with it and that every box of a tree is a union of.
-inline Aabb curve_bounds(const MeshView& mesh, const CurveItem& item) {
-  const CurveSegment segment = curve_segment(mesh, item.entry);
+/// The padded box of an item at a time, which decides with it and that every box of a tree is a
+/// union of. Between two sets its lower sides are concave functions of time and its upper ones
+/// convex: it never leaves the boxes at both ends.
+inline Aabb curve_bounds(const MeshView& mesh, const CurveItem& item, const MotionPlace& time) {
+  const CurveSegment segment = curve_segment(mesh, item.entry, time);
   Vec3d lo(1e300), hi(-1e300);
   for (std::uint32_t i = item.first; i <= item.last; ++i) {
     const Vec4d at = segment.point(piece_begin(mesh, i));
@@ -344,7 +326,7 @@ inline bool intersect_curve(const MeshView& mesh, const CurveItem& item, const R
   bool found = false;
   Aabb box;
   const auto keep = [&](double depth, double u, double v) {
-    if (box.is_empty()) box = curve_bounds(mesh, item);
+    if (box.is_empty()) box = curve_bounds(mesh, item, ray.time);
     float t;
     if (!settle_distance(ray, box, depth, &t)) return;
     const auto at = static_cast<float>(u);

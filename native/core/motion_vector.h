@@ -29,17 +29,31 @@ struct LocalSteps {
   Vec3d before, rest, after;
 };
 
-/// A triangle's point goes with its corners; of a curve it is the one on its axis, and of a sphere
-/// its centre, as in Cycles.
+/// Of a curve it is the point on its axis, and of a sphere its centre, as in Cycles.
+inline LocalSteps round_steps(const MeshView& mesh, const float* positions, const Hit& hit) {
+  const auto follow = [&](const auto& key_at) {
+    if (mesh.kind == PrimitiveKind::kSphere) return key_at(hit.primitive).at;
+    const CurveSegment segment =
+        segment_of_keys(mesh.shape, mesh.segment2key[hit.primitive], key_at);
+    return segment.point(static_cast<double>(hit.u)).at;
+  };
+  const auto at = [&](float time) {
+    const MotionPlace place = round_time(mesh, time);
+    return follow([&](std::uint32_t key) { return round_key(mesh, key, place); });
+  };
+  if (!positions) return {at(0.0f), at(0.5f), at(1.0f)};
+  const auto step = [&](std::size_t set) {
+    return follow([&](std::uint32_t key) {
+      const float* p = positions + 3 * (set * mesh.point_count + key);
+      return Vec4d{Vec3d(p[0], p[1], p[2]), 0.0};
+    });
+  };
+  return {step(0), at(0.5f), step(1)};
+}
+
+/// A triangle's point goes with its corners.
 inline LocalSteps local_steps(const MeshView& mesh, const float* positions, const Hit& hit) {
-  if (is_round(mesh.kind)) {
-    const Vec3d at = mesh.kind == PrimitiveKind::kSphere
-                         ? sphere_centre(mesh, hit.primitive)
-                         : curve_segment(mesh, mesh.segment2key[hit.primitive])
-                               .point(static_cast<double>(hit.u))
-                               .at;
-    return {at, at, at};
-  }
+  if (is_round(mesh.kind)) return round_steps(mesh, positions, hit);
   const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
   const auto at = [&](const Corners& corners) {
     const Vec3d a(corners.corner[0]);

@@ -60,37 +60,59 @@ inline LeafGrid make_leaf_grid(const Aabb& bounds) {
   return grid;
 }
 
+namespace detail {
+
+/// The radius that a capsule around `axis` a–b needs to hold an item of a set of curves at a time.
 /// The distance from the axis is convex, and so greatest at the ends of straight pieces; what bends
 /// is nearer to them than an eighth of the second derivative.
-inline RoundLeaf make_round_leaf(const MeshView& set, std::uint32_t item) {
-  RoundLeaf leaf{};
-  leaf.item = item;
-  const LeafGrid& grid = set.leaf_grid;
-  if (set.kind == PrimitiveKind::kSphere) {
-    const Vec3d centre = sphere_centre(set, item);
-    detail::put_on_grid(grid, centre, leaf.begin);
-    detail::put_on_grid(grid, centre, leaf.end);
-    const Vec3d a = detail::grid_place(grid, leaf.begin);
-    leaf.radius = detail::radius_above(detail::distance_from_segment(centre, a, a) +
-                                       sphere_radius(set, item));
-    return leaf;
-  }
-  const CurveItem its = curve_item(set, item);
-  leaf.entry = its.entry;
-  const CurveSegment segment = curve_segment(set, its.entry);
-  detail::put_on_grid(grid, segment.point(piece_begin(set, its.first)).at, leaf.begin);
-  detail::put_on_grid(grid, segment.point(piece_begin(set, its.last)).at, leaf.end);
-  const Vec3d a = detail::grid_place(grid, leaf.begin), b = detail::grid_place(grid, leaf.end);
-  double radius = 0.0;
-  for (std::uint32_t i = its.first; i <= its.last; ++i) {
+inline double curve_reach(const MeshView& set, const CurveItem& item, const MotionPlace& time,
+                          const Vec3d& a, const Vec3d& b) {
+  const CurveSegment segment = curve_segment(set, item.entry, time);
+  double reach = 0.0;
+  for (std::uint32_t i = item.first; i <= item.last; ++i) {
     const Vec4d at = segment.point(piece_begin(set, i));
-    radius =
-        std::max(radius, detail::distance_from_segment(at.at, a, b) + std::max(at.radius, 0.0));
+    reach = std::max(reach, distance_from_segment(at.at, a, b) + std::max(at.radius, 0.0));
   }
   if (set.shape == CurveShape::kThick) {
     const double step = 1.0 / double(set.pieces);
     const Vec4d bend = 0.125 * step * step * segment.bend();
-    radius += (bend.at.x + bend.at.y) + (bend.at.z + bend.radius);
+    reach += (bend.at.x + bend.at.y) + (bend.at.z + bend.radius);
+  }
+  return reach;
+}
+
+}  // namespace detail
+
+/// A capsule around the item where it is at the middle one of `times`, wide enough for all of them
+/// and, since all that its width is made of is a convex function of time between sets, for what
+/// lies between.
+/// @param times  of a set that stands still kAtRest alone
+inline RoundLeaf make_round_leaf(const MeshView& set, std::uint32_t item, const MotionPlace* times,
+                                 std::size_t time_count) {
+  RoundLeaf leaf{};
+  leaf.item = item;
+  const LeafGrid& grid = set.leaf_grid;
+  const MotionPlace& middle = times[time_count / 2];
+  double radius = 0.0;
+  if (set.kind == PrimitiveKind::kSphere) {
+    detail::put_on_grid(grid, round_key(set, item, middle).at, leaf.begin);
+    std::copy_n(leaf.begin, 3, leaf.end);
+    const Vec3d a = detail::grid_place(grid, leaf.begin);
+    for (std::size_t i = 0; i < time_count; ++i) {
+      const Vec4d sphere = round_key(set, item, times[i]);
+      radius = std::max(radius, detail::distance_from_segment(sphere.at, a, a) + sphere.radius);
+    }
+    leaf.radius = detail::radius_above(radius);
+    return leaf;
+  }
+  const CurveItem its = curve_item(set, item);
+  leaf.entry = its.entry;
+  const CurveSegment segment = curve_segment(set, its.entry, middle);
+  detail::put_on_grid(grid, segment.point(piece_begin(set, its.first)).at, leaf.begin);
+  detail::put_on_grid(grid, segment.point(piece_begin(set, its.last)).at, leaf.end);
+  const Vec3d a = detail::grid_place(grid, leaf.begin), b = detail::grid_place(grid, leaf.end);
+  for (std::size_t i = 0; i < time_count; ++i) {
+    radius = std::max(radius, detail::curve_reach(set, its, times[i], a, b));
   }
   leaf.radius = detail::radius_above(radius);
   return leaf;

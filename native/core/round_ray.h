@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/local_ray.h"
+#include "core/motion.h"
 
 namespace komorebi {
 
@@ -13,8 +14,9 @@ namespace komorebi {
 struct RoundRay {
   LocalRay local;
   Vec3d origin;
-  Vec3d x, y, z;  ///< orthonormal, right-handed; z is the direction
-  double length;  ///< of the direction that distances are in units of
+  Vec3d x, y, z;     ///< orthonormal, right-handed; z is the direction
+  double length;     ///< of the direction that distances are in units of
+  MotionPlace time;  ///< where it finds the set (round_time)
 
   /// A point seen along the ray: across it, and how far along it in units of space.
   Vec3d seen(const Vec3d& point) const {
@@ -36,9 +38,11 @@ inline void set_round_frame(const Vec3d& origin, const Vec3d& direction, RoundRa
   ray.y = Vec3d(b, sign + ray.z.y * ray.z.y * a, -ray.z.y);
 }
 
-inline RoundRay make_round_ray(const LocalRay& local, const Vec3& direction) {
+inline RoundRay make_round_ray(const LocalRay& local, const Vec3& direction,
+                               const MotionPlace& time) {
   RoundRay ray;
   ray.local = local;
+  ray.time = time;
   set_round_frame(Vec3d(local.shear.origin), Vec3d(direction), ray);
   return ray;
 }

@@ -21,7 +21,7 @@ inline RoundPoint ribbon_point(const MeshView& mesh, const Hit& hit, const Round
   const double depth = z0 + (u - u0) / (u1 - u0) * (z1 - z0);
   const Vec3d to_eye = -ray.z;
   RoundPoint point{ray.origin + depth * ray.z, to_eye};
-  const Vec3d tangent = curve_segment(mesh, mesh.segment2key[hit.primitive]).slope(u).at;
+  const Vec3d tangent = curve_segment(mesh, mesh.segment2key[hit.primitive], ray.time).slope(u).at;
   const Vec3d across = glm::cross(tangent, to_eye);
   const Vec3d outward = glm::cross(across, tangent);
   const double across_length = std::sqrt(glm::dot(across, across));
@@ -38,12 +38,13 @@ inline RoundPoint thick_point(const MeshView& mesh, const Hit& hit, const RoundR
   double depth;
   if (!thick_depth(at, &depth)) depth = at.at.z;
   const Vec3d position = ray.origin + depth * ray.z;
-  const Vec3d normal = position - curve_segment(mesh, mesh.segment2key[hit.primitive]).point(u).at;
+  const Vec3d normal =
+      position - curve_segment(mesh, mesh.segment2key[hit.primitive], ray.time).point(u).at;
   return {position, normal};
 }
 
 inline RoundPoint sphere_point(const MeshView& mesh, const Hit& hit, const RoundRay& ray) {
-  const Vec3d centre = sphere_centre(mesh, hit.primitive);
+  const Vec3d centre = round_key(mesh, hit.primitive, ray.time).at;
   double depth;
   if (!sphere_depth(mesh, hit.primitive, ray, &depth)) depth = ray.seen(centre).z;
   const Vec3d position = ray.origin + depth * ray.z;

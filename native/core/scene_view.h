@@ -49,10 +49,12 @@ struct TreeView {
   std::uint32_t depth = 0;  ///< of the wide tree; bounds the traversal stack
 };
 
-/// A deforming mesh's tree for some of the shutter's time (bvh/moving_tree.h).
+/// The tree of something that deforms for some of the shutter's time: of a mesh
+/// (bvh/moving_tree.h), or of curves or points (bvh/round_tree.h).
 struct TimeTree {
   TreeView tree;
   const std::uint32_t* leaf2triangle = nullptr;
+  const RoundLeaf* leaves = nullptr;
 };
 
 /// One mesh as the tracer and the shading read it; spans into memory that Mesh owns.
@@ -63,7 +65,7 @@ struct MeshView {
   std::uint32_t stretched = 0;  ///< 1: by its only instance, which stands still (world_normals)
   std::uint32_t triangle_count = 0;
   std::uint32_t vertex_count = 0;
-  std::uint32_t position_sets = 1;  ///< 1 = still; n sets of vertex_count positions at even times
+  std::uint32_t position_sets = 1;  ///< 1 = still; n sets of positions or points at even times
   const float* vtx2xyz = nullptr;   ///< [position_sets][vertex_count][3]
   const std::uint32_t* tri2vtx = nullptr;  ///< [triangle_count][3]
   std::uint32_t normal_sets = 1;           ///< 1: the same at all times
@@ -77,7 +79,7 @@ struct MeshView {
   std::uint32_t attribute_count = 0;
   TreeView tree;
   const std::byte* clusters = nullptr;   ///< leaves of the tree: bvh/triangle_cluster.h
-  const TimeTree* time_trees = nullptr;  ///< of a mesh that deforms, in place of the other
+  const TimeTree* time_trees = nullptr;  ///< of what deforms, in place of the other
   std::uint32_t time_tree_count = 0;
   // Curves and spheres instead of triangles; primitives are segments (of all curves), or points.
   CurveShape shape = CurveShape::kRibbon;
@@ -85,7 +87,7 @@ struct MeshView {
   std::uint32_t segment_parts = 1;             ///< leaves that a segment is spread over
   std::uint32_t primitive_count = 0;           ///< segments, or points
   std::uint32_t point_count = 0;               ///< keys of curves, or points
-  const float* points = nullptr;               ///< [point_count][4]: x, y, z, radius
+  const float* points = nullptr;               ///< [position_sets][point_count][4]: x, y, z, radius
   const std::uint32_t* segment2key = nullptr;  ///< first key | bits of core/curve.h
   const RoundLeaf* leaves = nullptr;           ///< of the tree
   LeafGrid leaf_grid;

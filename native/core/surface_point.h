@@ -106,6 +106,7 @@ inline SurfacePoint round_surface_point(const InstanceView& instance, const Mesh
   const Mat3d into_local(instance.local_from_world);
   const Vec3d place(instance.position);
   RoundRay round;
+  round.time = round_time(mesh, ray.time);
   set_round_frame(into_local * (Vec3d(ray.origin) - place), into_local * Vec3d(ray.direction),
                   round);
   const RoundPoint at = round_point(mesh, hit, round);

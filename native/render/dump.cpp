@@ -28,13 +28,25 @@ std::vector<float> without_rest(std::span<const float> all, std::size_t size, st
   return others;
 }
 
+void put_steps(ArrayFile& file, const std::string& key, const Mesh& mesh, std::size_t count) {
+  if (!mesh.step_positions()) return;
+  file.put<float>(key + "step_positions", span_of(mesh.step_positions(), 6 * count), {2, count, 3});
+}
+
 /// Curves or points.
 void put_round(ArrayFile& file, const std::string& key, const Mesh& mesh) {
   const RoundGeometry& round = *mesh.round();
   const bool are_curves = round.kind == PrimitiveKind::kCurve;
   file.put_text(key + "name", mesh.name());
   file.put<double>(key + "origin", span_of(glm::value_ptr(mesh.origin()), 3), {3});
-  put_rows<float>(file, key + (are_curves ? "keys" : "points"), round.points, 4);
+  const std::size_t count = round.point_count(), sets = round.sets;
+  put_rows<float>(file, key + (are_curves ? "keys" : "points"),
+                  span_of(round.points.data() + sets / 2 * 4 * count, 4 * count), 4);
+  if (sets > 1) {
+    const std::vector<float> others = without_rest(round.points, 4 * count, sets);
+    file.put<float>(key + "motion_points", others, {sets - 1, count, 4});
+  }
+  put_steps(file, key, mesh, count);
   if (!are_curves) return;
   const std::vector<std::int32_t> offsets = round.curve_offsets();
   file.put<std::int32_t>(key + "curve_offsets", offsets, {offsets.size()});
@@ -56,10 +68,7 @@ void put_mesh(ArrayFile& file, const std::string& key, const Mesh& mesh) {
         without_rest(span_of(v.vtx2xyz, sets * coordinates), coordinates, sets);
     file.put<float>(key + "motion_positions", others, {sets - 1, v.vertex_count, 3});
   }
-  if (mesh.step_positions()) {
-    file.put<float>(key + "step_positions", span_of(mesh.step_positions(), 2 * coordinates),
-                    {2, v.vertex_count, 3});
-  }
+  put_steps(file, key, mesh, v.vertex_count);
   put_rows<std::uint32_t>(file, key + "tri2vtx", span_of(v.tri2vtx, 3 * triangles), 3);
   if (v.normals) {
     const std::size_t normal_sets = v.normal_sets, size = 9 * triangles;
@@ -87,30 +96,62 @@ void put_mesh(ArrayFile& file, const std::string& key, const Mesh& mesh) {
   }
 }
 
+/// Positions in object space from those of the mesh's own; exact, see MeshGeometry.
+std::vector<float> get_positions(const ArrayFile& file, const std::string& name,
+                                 const std::vector<double>& origin) {
+  auto positions = file.get<float>(name);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    positions[i] = static_cast<float>(double{positions[i]} + origin[i % 3]);
+  }
+  return positions;
+}
+
+/// The same; none if there is no such array.
+std::vector<float> get_any_positions(const ArrayFile& file, const std::string& name,
+                                     const std::vector<double>& origin) {
+  return file.has(name) ? get_positions(file, name, origin) : std::vector<float>();
+}
+
+/// Keys or points, taken apart; none if there is no such array.
+struct DumpedPoints {
+  std::vector<float> xyz, radius;
+
+  DumpedPoints(const ArrayFile& file, const std::string& name, const std::vector<double>& origin) {
+    if (!file.has(name)) return;
+    const auto points = file.get<float>(name);
+    for (std::size_t i = 0; i + 3 < points.size(); i += 4) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        xyz.push_back(static_cast<float>(double{points[i + c]} + origin[c]));
+      }
+      radius.push_back(points[i + 3]);
+    }
+  }
+};
+
 std::shared_ptr<const Mesh> get_round(const ArrayFile& file, const std::string& key,
                                       ThreadPool& pool, const Cancel& cancel) {
   const bool are_curves = file.has(key + "keys");
   const auto origin = file.get<double>(key + "origin", 3);
-  const auto points = file.get<float>(key + (are_curves ? "keys" : "points"));
-  std::vector<float> xyz(points.size() / 4 * 3), radius(points.size() / 4);
-  for (std::size_t i = 0; i < radius.size(); ++i) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      xyz[3 * i + c] = static_cast<float>(double{points[4 * i + c]} + origin[c]);
-    }
-    radius[i] = points[4 * i + 3];
-  }
+  const DumpedPoints rest(file, key + (are_curves ? "keys" : "points"), origin);
+  const DumpedPoints others(file, key + "motion_points", origin);
+  const std::vector<float> steps = get_any_positions(file, key + "step_positions", origin);
+  const RoundMotion motion{others.xyz, others.radius, steps};
   constexpr Builder builder = Builder::kSah;  // as the add-on builds them
   const std::string name = file.get_text(key + "name");
-  if (!are_curves) return Mesh::build(PointsInput{name, xyz, radius}, builder, pool, cancel);
+  if (!are_curves) {
+    return Mesh::build(PointsInput{name, rest.xyz, rest.radius, motion}, builder, pool, cancel);
+  }
   const auto offsets = file.get<std::int32_t>(key + "curve_offsets");
   const auto shape = file.get_value<std::uint32_t>(key + "shape");
   if (shape > 2) throw std::runtime_error("the scene's curves are of an unknown shape");
-  const CurvesInput input{name,
-                          xyz,
-                          radius,
-                          offsets,
-                          static_cast<CurveShape>(shape),
-                          file.get_value<std::uint32_t>(key + "subdivisions")};
+  CurvesInput input;
+  input.name = name;
+  input.key2xyz = rest.xyz;
+  input.key2radius = rest.radius;
+  input.curve_offsets = offsets;
+  input.shape = static_cast<CurveShape>(shape);
+  input.subdivisions = file.get_value<std::uint32_t>(key + "subdivisions");
+  input.motion = motion;
   return Mesh::build(input, builder, pool, cancel);
 }
 
@@ -121,27 +162,16 @@ std::shared_ptr<const Mesh> get_mesh(const ArrayFile& file, const std::string& k
     return get_round(file, key, pool, cancel);
   }
   const auto origin = file.get<double>(key + "origin", 3);
-  auto vtx2xyz = file.get<float>(key + "vtx2xyz");
-  for (std::size_t i = 0; i < vtx2xyz.size(); ++i) {
-    vtx2xyz[i] = static_cast<float>(double{vtx2xyz[i]} + origin[i % 3]);  // exact, see Mesh
-  }
+  const std::vector<float> vtx2xyz = get_positions(file, key + "vtx2xyz", origin);
   const auto tri2vtx = file.get<std::uint32_t>(key + "tri2vtx");
   const std::vector<std::int32_t> corner2vtx(tri2vtx.begin(), tri2vtx.end());
   std::vector<std::int32_t> face_offsets(tri2vtx.size() / 3 + 1);
   for (std::size_t f = 0; f < face_offsets.size(); ++f) {
     face_offsets[f] = static_cast<std::int32_t>(3 * f);
   }
-  const auto in_time = [&](const char* name) {
-    std::vector<float> positions;
-    if (!file.has(key + name)) return positions;
-    positions = file.get<float>(key + name);
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-      positions[i] = static_cast<float>(double{positions[i]} + origin[i % 3]);
-    }
-    return positions;
-  };
-  const std::vector<float> motion_positions = in_time("motion_positions");
-  const std::vector<float> step_positions = in_time("step_positions");
+  const std::vector<float> motion_positions =
+      get_any_positions(file, key + "motion_positions", origin);
+  const std::vector<float> step_positions = get_any_positions(file, key + "step_positions", origin);
   std::vector<float> motion_normals;
   if (file.has(key + "motion_corner2normal")) {
     motion_normals = file.get<float>(key + "motion_corner2normal");

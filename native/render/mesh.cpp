@@ -111,11 +111,11 @@ void Mesh::take_uvs(const MeshInput& in, ThreadPool& pool, const Cancel& cancel)
   });
 }
 
-void Mesh::take_steps(const MeshInput& in, ThreadPool& pool, const Cancel& cancel) {
-  step_xyz_.resize(in.step_positions.size());
+void Mesh::take_steps(std::span<const float> positions, ThreadPool& pool, const Cancel& cancel) {
+  step_xyz_.resize(positions.size());
   const Vec3 shift(origin());  // exact: see MeshGeometry
   for_each_index(step_xyz_.size() / 3, pool, cancel, [&](std::size_t i) {
-    const Vec3 local = row(in.step_positions, i) - shift;
+    const Vec3 local = row(positions, i) - shift;
     for (std::size_t c = 0; c < 3; ++c) step_xyz_[3 * i + c] = local[static_cast<int>(c)];
   });
 }
@@ -140,7 +140,7 @@ std::shared_ptr<const Mesh> Mesh::build(const MeshInput& in, Builder builder, Th
   mesh->take_normals(in, pool, cancel);
   mesh->take_materials(in, pool, cancel);
   mesh->take_uvs(in, pool, cancel);
-  mesh->take_steps(in, pool, cancel);
+  mesh->take_steps(in.step_positions, pool, cancel);
   return mesh;
 }
 
@@ -170,12 +170,15 @@ std::shared_ptr<const Mesh> Mesh::build(const CurvesInput& in, Builder builder, 
                                         const Cancel& cancel) {
   std::shared_ptr<Mesh> mesh(new Mesh(in.name, build_curves(in, builder, pool, cancel)));
   mesh->take_shading(in);
+  mesh->take_steps(in.motion.steps, pool, cancel);
   return mesh;
 }
 
 std::shared_ptr<const Mesh> Mesh::build(const PointsInput& in, Builder builder, ThreadPool& pool,
                                         const Cancel& cancel) {
-  return std::shared_ptr<const Mesh>(new Mesh(in.name, build_points(in, builder, pool, cancel)));
+  std::shared_ptr<Mesh> mesh(new Mesh(in.name, build_points(in, builder, pool, cancel)));
+  mesh->take_steps(in.motion.steps, pool, cancel);
+  return mesh;
 }
 
 std::shared_ptr<const Mesh> Mesh::flattened(const Mat4d& matrix, ThreadPool& pool,
@@ -184,6 +187,11 @@ std::shared_ptr<const Mesh> Mesh::flattened(const Mat4d& matrix, ThreadPool& poo
     RoundGeometry moved = round_->transformed(matrix, Builder::kLinear, pool, cancel);
     std::shared_ptr<Mesh> mesh(new Mesh(name_, std::move(moved)));
     mesh->take_shading(*this);
+    for (std::size_t i = 0; i + 2 < step_xyz_.size(); i += 3) {
+      const Vec3d from = Vec3d(step_xyz_[i], step_xyz_[i + 1], step_xyz_[i + 2]) + origin();
+      const Vec3d to = Vec3d(matrix * glm::dvec4(from, 1.0)) - mesh->origin();
+      for (int c = 0; c < 3; ++c) mesh->step_xyz_[i + std::size_t(c)] = static_cast<float>(to[c]);
+    }
     return mesh;
   }
   const Array<float>& positions = geometry_->vtx2xyz;
@@ -262,7 +270,7 @@ MeshView Mesh::view() const {
   view.vtx2xyz = geometry_->vtx2xyz.data();
   view.tri2vtx = geometry_->tri2vtx.data();
   view.position_sets = geometry_->sets;
-  if (deforms()) {
+  if (geometry_->sets > 1) {
     view.kind = PrimitiveKind::kMovingTriangle;
     view.time_trees = geometry_->moving_tree.views.data();
     view.time_tree_count = static_cast<std::uint32_t>(geometry_->moving_tree.views.size());

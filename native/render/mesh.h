@@ -37,7 +37,7 @@ class Mesh {
                                       const Cancel& cancel) const;
 
   MeshView view() const;
-  /// MeshInput::step_positions in local space, or null.
+  /// MeshInput::step_positions, or those of keys or points, in local space; or null.
   const float* step_positions() const { return step_xyz_.empty() ? nullptr : step_xyz_.data(); }
   const std::string& name() const { return name_; }
   const Vec3d& origin() const { return round_ ? round_->origin : geometry_->origin; }
@@ -54,15 +54,15 @@ class Mesh {
   std::uint32_t degenerate_count() const { return tree().degenerate_count; }
   const MeshTree& tree() const { return geometry_->tree; }
   std::size_t node_count() const {
-    return round_ ? round_->tree.nodes.size()
+    return round_ ? round_->tree.node_count()
                   : geometry_->tree.nodes.size() + geometry_->moving_tree.node_count();
   }
   std::uint32_t depth() const {
-    if (deforms()) return geometry_->moving_tree.depth();
-    return round_ ? round_->tree.depth : geometry_->tree.depth;
+    if (round_) return round_->tree.depth();
+    return deforms() ? geometry_->moving_tree.depth() : geometry_->tree.depth;
   }
-  /// Whether its vertices move while the shutter is open.
-  bool deforms() const { return geometry_->sets > 1; }
+  /// Whether its vertices, keys or points move while the shutter is open.
+  bool deforms() const { return (round_ ? round_->sets : geometry_->sets) > 1; }
   /// Triangles, segments of curves, or points.
   std::uint32_t primitive_count() const {
     return round_ ? round_->primitive_count() : triangle_count();
@@ -82,7 +82,7 @@ class Mesh {
   void take_normals(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
   void take_materials(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
   void take_uvs(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
-  void take_steps(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
+  void take_steps(std::span<const float> positions, ThreadPool& pool, const Cancel& cancel);
 
   std::string name_;
   std::shared_ptr<const MeshGeometry> geometry_;  // empty where there are curves or points
@@ -96,7 +96,7 @@ class Mesh {
   Array<std::uint8_t> tri2smooth_;
   Array<std::uint16_t> tri2material_;  // of curves by segment
   Array<float> tri2uv_;                // [triangles][3][2]; of curves [segments][2]
-  Array<float> step_xyz_;              // [2][vertices][3], relative to the origin
+  Array<float> step_xyz_;              // [2][vertices, keys or points][3], relative to the origin
 };
 
 }  // namespace komorebi

@@ -99,6 +99,14 @@ std::size_t MeshGeometry::byte_count() const {
          moving_tree.byte_count();
 }
 
+std::vector<float> in_order(std::span<const float> others, std::span<const float> rest) {
+  const auto middle = others.begin() + std::ptrdiff_t(others.size() / 2);
+  std::vector<float> all(others.begin(), middle);
+  all.insert(all.end(), rest.begin(), rest.end());
+  all.insert(all.end(), middle, others.end());
+  return all;
+}
+
 MeshGeometry build_geometry(const MeshInput& in, Builder builder, ThreadPool& pool,
                             const Cancel& cancel) {
   MeshGeometry geometry;
@@ -106,13 +114,7 @@ MeshGeometry build_geometry(const MeshInput& in, Builder builder, ThreadPool& po
   if (geometry.sets == 1) {
     geometry.take_positions(in.vtx2xyz, pool);
   } else {
-    const std::size_t before = in.motion_positions.size() / 2;
-    std::vector<float> all(in.motion_positions.begin(),
-                           in.motion_positions.begin() + std::ptrdiff_t(before));
-    all.insert(all.end(), in.vtx2xyz.begin(), in.vtx2xyz.end());
-    all.insert(all.end(), in.motion_positions.begin() + std::ptrdiff_t(before),
-               in.motion_positions.end());
-    geometry.take_positions(all, pool);
+    geometry.take_positions(in_order(in.motion_positions, in.vtx2xyz), pool);
   }
   geometry.take_triangles(in, pool, cancel);
   geometry.build_tree(builder, pool, cancel);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "bvh/mesh_tree.h"
 #include "bvh/moving_tree.h"
@@ -66,6 +67,9 @@ struct MeshGeometry {
   /// Fills tri2vtx and tri2corner.
   void take_triangles(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
 };
+
+/// Sets at all times in their order, from those at the others and the one in the middle.
+std::vector<float> in_order(std::span<const float> others, std::span<const float> rest);
 
 /// `input` has passed check_mesh. Throws Cancelled.
 MeshGeometry build_geometry(const MeshInput& input, Builder builder, ThreadPool& pool,

@@ -28,24 +28,51 @@ class Checker {
                  const std::string& of) const {
     if (xyz.size() / 3 != radius.size()) refuse("radii must have one entry a " + of);
     if (radius.size() > kKeyMask) refuse("more " + of + "s than fit");
-    std::size_t positions = 0, radii = 0;
-    for (std::size_t i = 0; i < radius.size(); ++i) {
-      const bool finite = std::isfinite(xyz[3 * i]) && std::isfinite(xyz[3 * i + 1]) &&
-                          std::isfinite(xyz[3 * i + 2]);
-      positions += finite ? 0u : 1u;
-      radii += radius[i] >= 0.0f && radius[i] <= kMaxRadius ? 0u : 1u;
+    count(not_finite(xyz), "position is not finite", "positions are not finite");
+    count(no_radii(radius), "radius is negative or not finite", "radii are negative or not finite");
+  }
+  void motion(const RoundMotion& in, std::size_t rows, const std::string& of) const {
+    const std::size_t times = rows ? in.positions.size() / (3 * rows) : 0;
+    if (in.positions.size() != 3 * rows * times || times % 2 != 0 || times > kMostTimes) {
+      refuse("motion_positions must have a row a " + of + " at an even number of times");
     }
-    count(positions, "position is not finite", "positions are not finite");
-    count(radii, "radius is negative or not finite", "radii are negative or not finite");
+    if (!in.radii.empty() && in.radii.size() != rows * times) {
+      refuse("motion_radii must have an entry a " + of + " at the times of motion_positions");
+    }
+    if (!in.steps.empty() && (in.steps.size() != 6 * rows || !in.positions.empty())) {
+      refuse("step_positions must have a row a " + of + " at two times, without others in time");
+    }
+    count(not_finite(in.positions), "position in time is not finite",
+          "positions in time are not finite");
+    count(no_radii(in.radii), "radius in time is negative or not finite",
+          "radii in time are negative or not finite");
+    count(not_finite(in.steps), "position at a step is not finite",
+          "positions at a step are not finite");
   }
 
  private:
+  static constexpr std::size_t kMostTimes = 4096;
+  static std::size_t not_finite(std::span<const float> xyz) {
+    std::size_t bad = 0;
+    for (std::size_t i = 0; i + 2 < xyz.size(); i += 3) {
+      const bool finite =
+          std::isfinite(xyz[i]) && std::isfinite(xyz[i + 1]) && std::isfinite(xyz[i + 2]);
+      bad += finite ? 0u : 1u;
+    }
+    return bad;
+  }
+  static std::size_t no_radii(std::span<const float> radius) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(radius, [](float r) { return !(r >= 0.0f && r <= kMaxRadius); }));
+  }
+
   std::string start_;
 };
 
 void check_curves(const CurvesInput& in) {
   const Checker checker("curves", in.name);
   checker.positions(in.key2xyz, in.key2radius, "key");
+  checker.motion(in.motion, in.key2radius.size(), "key");
   const auto offsets = in.curve_offsets;
   if (offsets.empty()) checker.refuse("curve_offsets needs at least one entry");
   if (offsets.front() != 0 || static_cast<std::size_t>(offsets.back()) != in.key2radius.size()) {
@@ -85,11 +112,18 @@ void RoundGeometry::fill(MeshView& view) const {
   view.segment_parts = segment_parts;
   view.primitive_count = primitive_count();
   view.point_count = point_count();
+  view.position_sets = sets;
   view.points = points.data();
   view.segment2key = segment2key.data();
-  view.tree = tree.view();
-  view.leaves = tree.leaves.data();
   view.leaf_grid = tree.grid;
+  if (tree.views.empty()) return;  // it is about to be built
+  if (sets > 1) {
+    view.time_trees = tree.views.data();
+    view.time_tree_count = static_cast<std::uint32_t>(tree.views.size());
+  } else {
+    view.tree = tree.views.front().tree;
+    view.leaves = tree.views.front().leaves;
+  }
 }
 
 void RoundGeometry::take_points(std::span<const float> xyz, std::span<const float> radius,
@@ -107,6 +141,18 @@ void RoundGeometry::take_points(std::span<const float> xyz, std::span<const floa
   });
 }
 
+void RoundGeometry::take_sets(std::span<const float> xyz, std::span<const float> radius,
+                              const RoundMotion& motion, ThreadPool& pool) {
+  if (motion.positions.empty()) return take_points(xyz, radius, pool);
+  const std::vector<float> positions = in_order(motion.positions, xyz);
+  sets = static_cast<std::uint32_t>(positions.size() / xyz.size());
+  std::vector<float> radii = in_order(motion.radii, radius);
+  while (motion.radii.empty() && radii.size() < positions.size() / 3) {
+    radii.insert(radii.end(), radius.begin(), radius.end());
+  }
+  take_points(positions, radii, pool);
+}
+
 void RoundGeometry::build_tree(Builder builder, ThreadPool& pool, const Cancel& cancel) {
   MeshView view;
   fill(view);
@@ -116,7 +162,7 @@ void RoundGeometry::build_tree(Builder builder, ThreadPool& pool, const Cancel& 
 RoundGeometry RoundGeometry::transformed(const Mat4d& matrix, Builder builder, ThreadPool& pool,
                                          const Cancel& cancel) const {
   const double growth = std::cbrt(std::abs(glm::determinant(Mat3d(matrix))));
-  std::vector<float> xyz(3 * std::size_t{point_count()}), radius(point_count());
+  std::vector<float> xyz(points.size() / 4 * 3), radius(points.size() / 4);
   for (std::size_t i = 0; i < radius.size(); ++i) {
     const Vec3d local = Vec3d(points[4 * i], points[4 * i + 1], points[4 * i + 2]) + origin;
     const Vec3d moved(matrix * glm::dvec4(local, 1.0));
@@ -125,6 +171,7 @@ RoundGeometry RoundGeometry::transformed(const Mat4d& matrix, Builder builder, T
   }
   RoundGeometry result;
   result.kind = kind;
+  result.sets = sets;
   result.shape = shape;
   result.subdivisions = subdivisions;
   result.pieces = pieces;
@@ -161,7 +208,7 @@ RoundGeometry build_curves(const CurvesInput& in, Builder builder, ThreadPool& p
   geometry.pieces = in.shape == CurveShape::kRibbon  ? (1u << in.subdivisions) + 1
                     : in.shape == CurveShape::kThick ? kThickPieces
                                                      : 1;
-  geometry.take_points(in.key2xyz, in.key2radius, pool);
+  geometry.take_sets(in.key2xyz, in.key2radius, in.motion, pool);
   std::size_t segments = 0;
   for (std::size_t c = 0; c + 1 < in.curve_offsets.size(); ++c) {
     const std::int32_t keys = in.curve_offsets[c + 1] - in.curve_offsets[c];
@@ -183,11 +230,13 @@ RoundGeometry build_curves(const CurvesInput& in, Builder builder, ThreadPool& p
 
 RoundGeometry build_points(const PointsInput& in, Builder builder, ThreadPool& pool,
                            const Cancel& cancel) {
-  Checker("points", in.name).positions(in.point2xyz, in.point2radius, "point");
+  const Checker checker("points", in.name);
+  checker.positions(in.point2xyz, in.point2radius, "point");
+  checker.motion(in.motion, in.point2radius.size(), "point");
   check(cancel);
   RoundGeometry geometry;
   geometry.kind = PrimitiveKind::kSphere;
-  geometry.take_points(in.point2xyz, in.point2radius, pool);
+  geometry.take_sets(in.point2xyz, in.point2radius, in.motion, pool);
   geometry.build_tree(builder, pool, cancel);
   return geometry;
 }

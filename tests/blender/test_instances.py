@@ -25,6 +25,7 @@ class Engine:
 
 def export(engine=None, materials=False):
     """SceneData with nothing but what export_instances fills in, of the open scene."""
+    from komorebi.export.deform import DeformingShapes
     from komorebi.export.instance import export_instances
     from komorebi.export.wanted import Wanted
     from komorebi.scene_data import SceneData
@@ -32,7 +33,9 @@ def export(engine=None, materials=False):
 
     data = SceneData(None, None)
     graph = bpy.context.evaluated_depsgraph_get()
-    export_instances(engine or Engine(), graph, data, Wanted(materials=materials), Unchanged())
+    engine = engine or Engine()
+    still = DeformingShapes(engine, graph, None)
+    export_instances(engine, graph, data, Wanted(materials=materials), Unchanged(), still)
     return data
 
 

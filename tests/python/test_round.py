@@ -59,6 +59,56 @@ def test_bad_points_are_refused_by_name() -> None:
         core.Mesh.from_points("Cloud", KEYS, changed(RADII, 0, -1.0))
 
 
+MOVED = np.stack([KEYS - 0.5, KEYS + 0.5])
+
+BAD_MOTION = {
+    "shape": ({"motion_positions": MOVED[:, 1:].copy()}, r"motion_positions must have shape"),
+    "odd": ({"motion_positions": MOVED[:1].copy()}, "at an even number of times"),
+    "dtype": ({"motion_positions": MOVED.astype(np.float64)}, "must have dtype float32"),
+    "not finite": (
+        {"motion_positions": changed(MOVED, (1, 3, 0), np.inf)},
+        "1 position in time is not finite",
+    ),
+    "radii": (
+        {"motion_positions": MOVED, "motion_radii": np.full((2, 5), -1.0, np.float32)},
+        "10 radii in time are negative or not finite",
+    ),
+    "radii alone": (
+        {"motion_radii": np.ones((2, 5), np.float32)},
+        "motion_radii must have an entry a .* at the times",
+    ),
+    "steps": ({"step_positions": MOVED[:1].copy()}, "step_positions must have shape"),
+    "step": ({"step_positions": changed(MOVED, (0, 0, 0), np.nan)}, "1 position at a step is not"),
+    "both": ({"motion_positions": MOVED, "step_positions": MOVED}, "without others in time"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_MOTION)
+def test_bad_motion_is_refused_by_name(case: str) -> None:
+    wrong, sentence = BAD_MOTION[case]
+    with pytest.raises(ValueError, match='curves "Fur": .*' + sentence):
+        core.Mesh.from_curves("Fur", KEYS, RADII, OFFSETS, **wrong)
+    with pytest.raises(ValueError, match='points "Cloud": .*' + sentence):
+        core.Mesh.from_points("Cloud", KEYS, RADII, **wrong)
+
+
+def test_motion_is_kept_and_blurs() -> None:
+    still = core.Mesh.from_points("Cloud", KEYS - 2.0, RADII * 4)
+    moved = core.Mesh.from_points(
+        "Cloud", KEYS - 2.0, RADII * 4, motion_positions=np.stack([KEYS - 3.0, KEYS]),
+        motion_radii=np.stack([RADII, RADII * 8]),
+    )  # fmt: skip
+    assert moved.primitive_count == 5
+    assert moved.byte_count >= still.byte_count + 2 * 5 * 16
+    pictures = []
+    for mesh in (still, moved):
+        scene = shapes.scene(committed=False)
+        scene.add_instances(scene.add_mesh(mesh), np.eye(4)[None], np.zeros(1, np.uint32))
+        scene.commit()
+        pictures.append(picture(scene))
+    assert np.abs(pictures[0] - pictures[1]).max() > 0.1
+
+
 def test_counts() -> None:
     curves = core.Mesh.from_curves("Fur", KEYS, RADII, OFFSETS)
     assert (curves.primitive_count, curves.triangle_count) == (3, 0)

@@ -63,4 +63,48 @@ inline Curves scaled_fur(Curves curves, double scale) {
   return curves;
 }
 
+/// Keys or points in time, rows as RoundMotion takes them: `move(position, time)` and
+/// `grow(radius, time)` at `others` + 1 times, of which the middle one becomes the rest.
+struct MovedKeys {
+  std::vector<float> rest_xyz, rest_radius, xyz, radius;
+
+  template <class Move, class Grow>
+  MovedKeys(const std::vector<float>& at, const std::vector<float>& wide, int others,
+            const Move& move, const Grow& grow) {
+    for (int i = 0; i <= others; ++i) {
+      const double time = double(i) / others;
+      const bool is_rest = 2 * i == others;
+      for (std::size_t k = 0; k < wide.size(); ++k) {
+        const Vec3d p = move(Vec3d(at[3 * k], at[3 * k + 1], at[3 * k + 2]), time);
+        for (int c = 0; c < 3; ++c) (is_rest ? rest_xyz : xyz).push_back(static_cast<float>(p[c]));
+        (is_rest ? rest_radius : radius).push_back(static_cast<float>(grow(double(wide[k]), time)));
+      }
+    }
+  }
+  RoundMotion motion() const { return {xyz, radius, {}}; }
+
+  /// What stands still where these are at a time.
+  Curves still(const Curves& like, int others, double time) const {
+    const std::size_t count = like.radius.size(), half = std::size_t(others) / 2;
+    const double place = time * others;
+    const auto from = std::min(static_cast<std::size_t>(place), std::size_t(others) - 1);
+    const double f = place - double(from);
+    const auto row = [&](const std::vector<float>& moved, const std::vector<float>& rest,
+                         std::size_t set, std::size_t i, std::size_t width) {
+      if (set == half) return double(rest[i]);
+      return double(moved[(set < half ? set : set - 1) * width * count + i]);
+    };
+    Curves at = like;
+    for (std::size_t i = 0; i < at.xyz.size(); ++i) {
+      at.xyz[i] = static_cast<float>((1.0 - f) * row(xyz, rest_xyz, from, i, 3) +
+                                     f * row(xyz, rest_xyz, from + 1, i, 3));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      at.radius[i] = static_cast<float>((1.0 - f) * row(radius, rest_radius, from, i, 1) +
+                                        f * row(radius, rest_radius, from + 1, i, 1));
+    }
+    return at;
+  }
+};
+
 }  // namespace komorebi::testing

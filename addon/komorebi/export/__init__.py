@@ -12,7 +12,7 @@ from ..scene_data import SceneData
 from ..unchanged import Unchanged
 from .aovs import warn_world
 from .camera_motion import CameraMotion
-from .deform import DeformingMeshes
+from .deform import DeformingShapes
 from .instance import export_instances
 from .motion import InstanceMotion
 from .shutter import Shutter, export_shutter
@@ -46,7 +46,7 @@ def export_scene(
             cameras={view: camera.data for view, camera in zip(views, cameras, strict=True)},
             world=exported_world,
         )
-        deforming = DeformingMeshes(engine, depsgraph, shutter)
+        deforming = DeformingShapes(engine, depsgraph, shutter)
         motion = None if shutter is None else InstanceMotion(shutter, deforming)
         wanted = Wanted.by(sources)
         export_instances(engine, depsgraph, data, wanted, unchanged, deforming, motion)

@@ -27,13 +27,13 @@ def hair_systems(obj: Any) -> list[Any]:
     return systems
 
 
-def export_hair(obj: Any, name: str, scene: Any, uvs: bool) -> CurveData | None:
-    """All strands of an emitter in its own space, with `uvs` also its UVs where they grow; None
-    when it has none."""
+def export_hair(obj: Any, name: str, scene: Any, uvs: bool, stride: int = 1) -> CurveData | None:
+    """All strands of an emitter in its own space, or every `stride`-th of them, with `uvs` also its
+    UVs where they grow; None when it has none."""
     parts, slots, roots = [], [], []
     for modifier in hair_systems(obj):
         system = modifier.particle_system
-        strands = _strands(system)
+        strands = _strands(system)[::stride]
         if not strands:
             continue
         parts.append(_export_system(obj, system, strands))

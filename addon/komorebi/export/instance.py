@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from .. import compat, reporting
 from ..scene_data import InstanceData, ObjectData, SceneData, UIntArray
 from ..unchanged import Unchanged
-from .deform import DeformingMeshes
+from .deform import DeformingShapes
 from .instance_matrices import AllAtOnce, OneByOne, loses_memory
 from .materials import MaterialExporter
 from .motion import HAIR, SURFACE, InstanceMotion
@@ -39,11 +39,11 @@ class _Entry:
 
 def export_instances(
     engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted, unchanged: Unchanged,
-    deforming: DeformingMeshes | None = None, motion: InstanceMotion | None = None,
+    deforming: DeformingShapes | None = None, motion: InstanceMotion | None = None,
 ) -> None:  # fmt: skip
     """Fills shapes, instances, objects, materials and what was ignored into `data`; `motion` learns
-    which instances there are, and `deforming` which meshes may change."""
-    deforming = deforming or DeformingMeshes(engine, depsgraph, None)
+    which instances there are, and `deforming` which shapes may change."""
+    deforming = deforming or DeformingShapes(engine, depsgraph, None)
     exporter = _Exporter(engine, depsgraph, data, wanted, unchanged, deforming, motion)
     exporter.walk()
     data.instances = exporter.groups()
@@ -55,7 +55,7 @@ class _Exporter:
 
     def __init__(
         self, engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted, unchanged: Unchanged,
-        deforming: DeformingMeshes, motion: InstanceMotion | None,
+        deforming: DeformingShapes, motion: InstanceMotion | None,
     ) -> None:  # fmt: skip
         self._engine = engine
         self._depsgraph = depsgraph

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..scene_data import DoubleArray, FloatArray, InstanceData
-from .deform import DeformingMeshes
+from .deform import DeformingShapes
 from .shapes import TYPES
 from .shutter import Shutter, times
 from .walk import Subject, object_of, walk
@@ -33,12 +33,12 @@ class _Track:
 
 
 class InstanceMotion:
-    """Follows the instances of a depsgraph, and with them the meshes that deform.
+    """Follows the instances of a depsgraph, and with them the shapes that deform.
 
     Objects are told apart as Cycles tells them: by the instancer and Blender's persistent ids.
     """
 
-    def __init__(self, shutter: Shutter, deforming: DeformingMeshes) -> None:
+    def __init__(self, shutter: Shutter, deforming: DeformingShapes) -> None:
         self._shutter = shutter
         self._deforming = deforming
         self._places: dict[Key, tuple[int, int] | None] = {}  # None: more than one has this key
@@ -71,7 +71,7 @@ class InstanceMotion:
             if place is None:
                 continue
             shape, number = place
-            if what == SURFACE and self._deforming.wants(shape, time):
+            if self._deforming.wants(shape, time):
                 self._deforming.record(shape, object_of(instance), time)
             track = self._tracks[shape]
             if time in times(track.steps[number]):

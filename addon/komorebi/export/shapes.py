@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from .. import compat, core, mesh_cache
@@ -9,7 +10,7 @@ from ..errors import RenderCancelled
 from ..scene_data import AnyMesh, CurveData, PointData
 from ..unchanged import Unchanged
 from .curves import export_curves
-from .deform import DeformingMeshes
+from .deform import DeformingShapes
 from .hair import export_hair, hair_systems
 from .mesh import MeshReader
 from .names import name_of
@@ -25,7 +26,7 @@ class ShapeExporter:
 
     def __init__(
         self, engine: Any, depsgraph: Any, meshes: list[AnyMesh], wanted: Wanted,
-        unchanged: Unchanged, deforming: DeformingMeshes,
+        unchanged: Unchanged, deforming: DeformingShapes,
     ) -> None:  # fmt: skip
         self._engine = engine
         self._core = core.load()
@@ -56,9 +57,7 @@ class ShapeExporter:
         key = obj.original.as_pointer()
         index = self._by_emitter.get(key)
         if index is None:
-            self._deforming.watch_hair(obj)
-            hair = export_hair(obj, name_of(obj), self._scene, self._wanted.uvs)
-            index = self._by_emitter[key] = self._add(self._with_key(hair))
+            index = self._by_emitter[key] = self._add(self._read_hair(obj))
         return index
 
     def _is_shown(self, kind: str) -> bool:
@@ -82,9 +81,9 @@ class ShapeExporter:
     def _read(self, obj: Any) -> AnyMesh | None:
         if obj.type == "CURVES":
             curves = export_curves(obj.data, name_of(obj), self._scene, self._wanted.uvs)
-            return self._watched(obj, curves)
+            return self._followed(obj, curves, self._read_curves)
         if obj.type == "POINTCLOUD":
-            return self._watched(obj, export_points(obj.data, name_of(obj)))
+            return self._followed(obj, _read_points(obj), _read_points)
         with compat.mesh_of(obj) as mesh:
             return self._read_mesh(obj, mesh) if len(mesh.polygons) else None
 
@@ -100,9 +99,24 @@ class ShapeExporter:
         data.key = key
         return data
 
-    def _watched(self, obj: Any, data: CurveData | PointData | None) -> AnyMesh | None:
+    def _read_hair(self, obj: Any) -> AnyMesh | None:
+        hair = export_hair(obj, name_of(obj), self._scene, self._wanted.uvs)
+        if hair is not None and self._deforming.follow_hair(len(self._meshes), obj, hair):
+            return hair
+        return self._with_key(hair)
+
+    def _read_curves(self, obj: Any) -> CurveData | None:
+        return export_curves(obj.data, name_of(obj), self._scene, uvs=False)
+
+    def _followed(
+        self, obj: Any, data: CurveData | PointData | None, read: Callable[[Any], Any]
+    ) -> AnyMesh | None:
+        """Curves or points, of which `read` reads where they are at other times."""
+        if data is not None and self._deforming.may_deform(obj):
+            self._deforming.follow_keys(len(self._meshes), obj, data, read)
+            return data
         if data is not None:
-            self._deforming.watch(len(self._meshes), obj, data.positions)
+            self._deforming.watch(len(self._meshes), obj, data)
         return self._with_key(data)
 
     def _with_key(self, data: CurveData | PointData | None) -> AnyMesh | None:
@@ -116,3 +130,7 @@ class ShapeExporter:
             return NONE
         self._meshes.append(exported)
         return len(self._meshes) - 1
+
+
+def _read_points(obj: Any) -> PointData | None:
+    return export_points(obj.data, name_of(obj))

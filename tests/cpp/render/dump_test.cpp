@@ -185,6 +185,41 @@ TEST_F(Dump, KeepsWhatTheVectorPassCompares) {
   EXPECT_TRUE(std::ranges::any_of(vectors, [](float x) { return x != 0.0f; }));
 }
 
+TEST_F(Dump, KeepsStrandsInTime) {
+  const Curves fur = made_fur(30, 3, 0.5, 0.05, 2.0, CurveShape::kThick);
+  const MovedKeys moved(
+      fur.xyz, fur.radius, 4, [](const Vec3d& p, double t) { return p + Vec3d(t, t * t, 0.0); },
+      [](double r, double t) { return r * (1.0 + t); });
+  std::vector<float> steps(moved.xyz.begin(),
+                           moved.xyz.begin() + 6 * std::ptrdiff_t(fur.radius.size()));
+  for (const bool still : {false, true}) {
+    const auto original = scene();
+    CameraDesc camera = original->camera_desc();
+    camera.shutter.still = still;
+    original->set_camera(camera);
+    CurvesInput curves = fur.input("hair");
+    PointsInput points{"cloud", fur.xyz, fur.radius};
+    curves.motion = points.motion = still ? RoundMotion{{}, {}, steps} : moved.motion();
+    for (const auto& mesh : {Mesh::build(curves, Builder::kSah, shared_pool(), Cancel()),
+                             Mesh::build(points, Builder::kSah, shared_pool(), Cancel())}) {
+      const InstanceInput there{original->add_mesh(mesh),
+                                glm::translate(Mat4d(1.0), Vec3d(4001, -1, 1))};
+      original->add_instances({&there, 1}, "strands");
+    }
+    Settings all = settings();
+    all.passes = {"Combined", "Vector"};
+    write_dump(path_, *original, all);
+    const std::string first = bytes();
+    const DumpedRender read = read_dump(path_, shared_pool(), Cancel());
+    write_dump(path_, *read.scene, read.settings);
+    EXPECT_EQ(bytes(), first);
+    const auto picture = render(committed(original), all, still ? "Vector" : "Combined");
+    EXPECT_EQ(render(committed(read.scene), all, still ? "Vector" : "Combined"), picture);
+    EXPECT_TRUE(std::ranges::any_of(picture, [](float x) { return x != 0.0f; }));
+    EXPECT_EQ(original->view().moves, !still);
+  }
+}
+
 TEST_F(Dump, CutShortAnywhereIsRefused) {
   write_dump(path_, *scene(), settings());
   const std::string whole = bytes();

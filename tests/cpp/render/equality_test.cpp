@@ -8,6 +8,7 @@
 #include "bvh/traverse.h"
 #include "render/one_ray.h"
 #include "render/sky_guide.h"
+#include "support/made_curves.h"
 #include "support/scenes.h"
 
 namespace komorebi::testing {
@@ -106,7 +107,7 @@ std::shared_ptr<Scene> telling_scene() {
 }
 
 /// Camera, objects and shutter in motion: a fast turn, a mirrored and sheared pass through the
-/// picture, a ball that grows out of nothing, and curves.
+/// picture, a ball that grows out of nothing, and what changes its shape.
 std::shared_ptr<Scene> moving_scene(Builder builder = Builder::kLinear) {
   const auto ball = sphere(16, Vec3d(0), 0.8, true).mesh(builder);
   const auto cube = box(Vec3d(-0.5), Vec3d(0.5)).mesh(builder);
@@ -148,6 +149,24 @@ std::shared_ptr<Scene> moving_scene(Builder builder = Builder::kLinear) {
   const InstanceInput waving{scene->add_mesh(wave), glm::translate(Mat4d(1.0), Vec3d(1, 1.5, 1))};
   scene->add_instances({&waving, 1}, "waving");
   move(wave, [](double t) { return glm::translate(Mat4d(1.0), Vec3d(-2.5, -1.0 + t, 1.0)); });
+  for (const CurveShape shape : {CurveShape::kRibbon, CurveShape::kThick}) {
+    const Curves fur = made_fur(60, 3, 0.4, 0.03, 2.0, shape);
+    const MovedKeys blown(
+        fur.xyz, fur.radius, 4,
+        [](const Vec3d& p, double t) {
+          return p + Vec3d(0.8 * t * t, 0.0, 0.2 * std::sin(9.0 * t));
+        },
+        [](double r, double t) { return r * (1.0 + t); });
+    CurvesInput curves = fur.input("fur");
+    PointsInput cloud{"cloud", fur.xyz, fur.radius};
+    curves.motion = cloud.motion = blown.motion();
+    const InstanceInput there{
+        scene->add_mesh(Mesh::build(curves, builder, shared_pool(), Cancel())),
+        glm::translate(Mat4d(1.0), Vec3d(1.0, shape == CurveShape::kThick ? -2.0 : 0.0, 1.2))};
+    scene->add_instances({&there, 1}, "fur");
+    move(Mesh::build(cloud, builder, shared_pool(), Cancel()),
+         [](double t) { return glm::translate(Mat4d(1.0), Vec3d(2.5 - t, 0.5, 0.8)); });
+  }
   SceneTables tables;
   tables.objects = {{1.0f, 101, 201, 0.3f, 1.2f}};
   scene->set_tables(std::move(tables));

@@ -109,6 +109,51 @@ TEST(VectorPass, FollowsCurvesByTheirAxisAndSpheresByTheirCentre) {
   }
 }
 
+TEST(VectorPass, FollowsStrandsThatChangeTheirShape) {
+  const auto camera =
+      looking({{0, -6, 0}, {0, -6, 0}, {0, -6, 0}}, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+  Curves bar;
+  for (int i = 0; i < 5; ++i) bar.key({-1.2 + 0.6 * i, 0, 0}, 0.3);
+  bar.end_curve();
+  bar.shape = CurveShape::kThick;
+  Curves ball;
+  ball.key({0, 0, 0}, 0.9);
+  // The way of x itself, so that a spline through keys at even steps is the map between them.
+  const auto bend = [](const Vec3d& p, double t) {
+    const double s = 2.0 * t - 1.0;
+    return Vec3d((1.0 + 0.25 * s) * p.x + 0.3 * s, 0.5 * s, 0.2 * s * s);
+  };
+  const MovedKeys bars(bar.xyz, bar.radius, 2, bend, [](double r, double) { return r; });
+  const MovedKeys balls(ball.xyz, ball.radius, 2, bend, [](double r, double) { return r; });
+  for (const bool in_time : {false, true}) {  // steps alone, or a set with a tree in time
+    for (const bool is_bar : {false, true}) {
+      CurvesInput curves = bar.input("bar");
+      PointsInput points{"ball", ball.xyz, ball.radius};
+      const MovedKeys& moved = is_bar ? bars : balls;
+      curves.motion = points.motion = in_time ? moved.motion() : RoundMotion{{}, {}, moved.xyz};
+      const auto mesh = is_bar ? Mesh::build(curves, Builder::kLinear, shared_pool(), Cancel())
+                               : Mesh::build(points, Builder::kLinear, shared_pool(), Cancel());
+      const Mat4d away = translated(0.1, 0, 0);
+      const auto scene = committed(make_scene({{mesh, away}}, still_at(camera[1])));
+      Settings settings = with_vector();
+      settings.samples = 1;
+      const auto vectors = render(scene, settings, "Vector");
+      const auto positions = render(scene, settings, "Position");
+      const std::size_t middle = kSize / 2 * kSize + kSize / 2;
+      const Vec3d axis(is_bar ? double{positions[3 * middle]} - 0.1 : 0.0, 0, 0);
+      const auto at = [&](double t) {
+        const Vec3d p = bend(axis, t) + Vec3d(0.1, 0, 0);
+        return pinhole(Vec3d(p.x, p.z, -6 - p.y));
+      };
+      EXPECT_NEAR(vectors[4 * middle], at(0).x - at(0.5).x, 2e-3);
+      EXPECT_NEAR(vectors[4 * middle + 1], at(0).y - at(0.5).y, 2e-3);
+      EXPECT_NEAR(vectors[4 * middle + 2], at(0.5).x - at(1).x, 2e-3);
+      EXPECT_NEAR(vectors[4 * middle + 3], at(0.5).y - at(1).y, 2e-3);
+      EXPECT_GT(std::abs(vectors[4 * middle]), 1.0f);
+    }
+  }
+}
+
 TEST(VectorPass, IsTheMeanOverTheSamplesThatHit) {
   const auto poses =
       looking({{0, -6, 1}, {0, -6, 1}, {0, -6, 1}}, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
