@@ -336,7 +336,7 @@ inline bool intersect_curve(const MeshView& mesh, const CurveItem& item, const R
   };
   if (mesh.shape == CurveShape::kThickLinear) {
     const bool is_last = item.entry & kLastOfCurve;
-    const Vec4d next = detail::curve_key(mesh, (item.entry & kKeyMask) + (is_last ? 1 : 2));
+    const Vec4d next = round_key(mesh, (item.entry & kKeyMask) + (is_last ? 1 : 2), ray.time);
     double u, depth;
     if (detail::meet_swept_sphere(segment, {ray.seen(next.at), next.radius},
                                   item.entry & kFirstOfCurve, &u, &depth)) {

@@ -13,8 +13,8 @@ void clear_row(const PassLayout& layout, float* row);
 void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, const Vec3& normal,
                  float depth, std::uint32_t sample, float* row);
 
-/// What the hit's material says for shader AOVs: part of put_surface, and all that a holdout leaves,
-/// as in Cycles.
+/// What the hit's material says for shader AOVs: part of put_surface, and all that a holdout
+/// leaves, as in Cycles.
 void put_values(const RenderContext& context, const Hit& hit, float* row);
 
 /// The world that a camera ray sees.
