@@ -19,6 +19,7 @@ import komorebi.result
 scene = bpy.context.scene
 bpy.ops.mesh.primitive_monkey_add()
 support.small(scene, size=(320, 240), samples={samples})
+{prepare}
 state = dict(shown=0, started=None)
 write = komorebi.result.ResultWriter._write
 def counted(self, session, tile, passes, combined=None):
@@ -46,6 +47,7 @@ def step():
     settings = scene.render.image_settings
     settings.file_format, settings.color_depth = "OPEN_EXR", "32"
     bpy.data.images["Render Result"].save_render({picture!r})
+    print("FRAME", scene.frame_current, scene.frame_subframe, flush=True)
     print("DONE", state["shown"], flush=True)
     bpy.ops.wm.quit_blender()
 bpy.app.timers.register(guarded, first_interval=1.0, persistent=True)
@@ -92,9 +94,9 @@ def run(text, folder):
     return done
 
 
-def watch(folder, samples):
+def watch(folder, samples, prepare=""):
     picture = folder / "picture.exr"
-    done = run(WATCH.format(samples=samples, picture=str(picture)), folder)
+    done = run(WATCH.format(samples=samples, prepare=prepare, picture=str(picture)), folder)
     return done, support.read(picture)
 
 
@@ -104,6 +106,24 @@ def test_tiles_appear_while_the_frame_renders(folder):
     assert len(shown) >= 3, done
     assert shown[-1][0] == "(0, 0, 320, 240)", done
     assert (pixels[:, :, 3] == 1).all()
+
+
+MOTION = """
+monkey = bpy.context.object
+for frame, x in ((9, -3.0), (11, 3.0)):
+    monkey.location.x = x
+    monkey.keyframe_insert("location", frame=frame)
+scene.frame_set(10)
+scene.render.use_motion_blur, scene.render.film_transparent = True, True
+bpy.data.objects["Cube"].hide_render = True
+"""
+
+
+def test_motion_blur_while_the_interface_lives(folder):
+    done, pixels = watch(folder, samples=16, prepare=MOTION)
+    assert "FRAME 10 0.0" in done.output, done
+    partly = (pixels[:, :, 3] > 0.02) & (pixels[:, :, 3] < 0.98)
+    assert partly.sum() > 500, "the monkey is blurred"
 
 
 # Render Single Layer is heeded where a user presses F12, not on the command line.
