@@ -101,7 +101,7 @@ def watch(folder, samples, prepare=""):
 
 
 def test_tiles_appear_while_the_frame_renders(folder):
-    done, pixels = watch(folder, samples=64)
+    done, pixels = watch(folder, samples=512)
     shown = re.findall(r"SHOWN (\(.*\)) (\d)", done.output)
     assert len(shown) >= 3, done
     assert shown[-1][0] == "(0, 0, 320, 240)", done
