@@ -37,7 +37,7 @@ def set_samples(scene: Any, engine: str, samples: int, seed: int) -> None:
     if engine == "CYCLES":
         require(scene.cycles, samples=samples)
         if not scene.cycles.use_adaptive_sampling:
-            engines.skip_first_sample(scene.cycles, samples)
+            engines.take_samples(scene.cycles, samples, 0)
     else:
         require(scene.komorebi, samples=samples)
     engines.set_seed(scene, engine, seed)
