@@ -25,8 +25,10 @@ def column(name: str, x: float, y: float) -> bpy.types.Object:
     return made
 
 
-def bones(of: bpy.types.Object) -> bpy.types.Object:
-    """An armature that bends the upper half of a column, by a curve over frames."""
+def bones(
+    of: bpy.types.Object, turns: tuple[tuple[int, float], ...] = ((1, 0.0), (20, 1.2))
+) -> bpy.types.Object:
+    """An armature that turns the upper half of a column, by a curve over (frame, angle)."""
     rig = link(bpy.data.objects.new("Bones", bpy.data.armatures.new("Bones")))
     rig.location = of.location
     bpy.context.view_layer.objects.active = rig
@@ -36,7 +38,7 @@ def bones(of: bpy.types.Object) -> bpy.types.Object:
     bpy.ops.object.mode_set(mode="OBJECT")
     pose = rig.pose.bones["Upper"]
     pose.rotation_mode = "XYZ"
-    for frame, angle in ((1, 0.0), (20, 1.2)):
+    for frame, angle in turns:
         pose.rotation_euler = (0.0, 0.0, angle)
         pose.keyframe_insert("rotation_euler", frame=frame)
     of.vertex_groups.new(name="Upper").add(list(range(16, 36)), 1.0, "REPLACE")

@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 from common import add_box, add_camera, add_mesh, add_sphere, empty_scene, link, set_world
-from deforming import column
+from deforming import bones, column
 from features import ground
 from instancing import wedge
 from mathutils import Matrix, Vector
@@ -102,20 +102,7 @@ def motion_objects() -> None:
 def bent_column(name: str, x: float, y: float) -> bpy.types.Object:
     """A column of which a bone turns the upper half about its axis."""
     bent = column(name, x, y)
-    rig = link(bpy.data.objects.new("Bones", bpy.data.armatures.new("Bones")))
-    rig.location = bent.location
-    bpy.context.view_layer.objects.active = rig
-    bpy.ops.object.mode_set(mode="EDIT")
-    bone = rig.data.edit_bones.new("Upper")
-    bone.head, bone.tail = (0.0, 0.0, 0.8), (0.0, 0.0, 1.6)
-    bpy.ops.object.mode_set(mode="OBJECT")
-    pose = rig.pose.bones["Upper"]
-    pose.rotation_mode = "XYZ"
-    for frame, angle in ((FRAME - 1, -1.2), (FRAME + 2, 2.4)):
-        pose.rotation_euler = (0.0, 0.0, angle)
-        pose.keyframe_insert("rotation_euler", frame=frame)
-    bent.vertex_groups.new(name="Upper").add(list(range(16, 36)), 1.0, "REPLACE")
-    bent.modifiers.new("Armature", "ARMATURE").object = rig
+    bones(bent, ((FRAME - 1, -1.2), (FRAME + 2, 2.4)))
     return bent
 
 

@@ -232,18 +232,11 @@ def has_overscan(scene: Any) -> bool:
     return bool(getattr(scene.eevee, "use_overscan", False))
 
 
-def world_nodes(world: Any) -> Any | None:
-    """The node tree that a world uses, or None (from 5.0 every world has one)."""
-    if VERSION < (5, 0, 0) and not world.use_nodes:
+def shader_nodes(owner: Any) -> Any | None:
+    """The node tree that a world or material uses, or None (from 5.0 each has one)."""
+    if VERSION < (5, 0, 0) and not owner.use_nodes:
         return None
-    return world.node_tree
-
-
-def material_nodes(material: Any) -> Any | None:
-    """The node tree that a material uses, or None (from 5.0 every material has one)."""
-    if VERSION < (5, 0, 0) and not material.use_nodes:
-        return None
-    return material.node_tree
+    return owner.node_tree
 
 
 def aov_name(node: Any) -> str:

@@ -29,7 +29,7 @@ class AovReader:
     def values_of(self, material: Any | None) -> list[float]:
         """The columns' floats one after the other; null where the material does not say."""
         values = [0.0] * sum(c.channels for c in self._columns)
-        tree = None if material is None else compat.material_nodes(material)
+        tree = None if material is None else compat.shader_nodes(material)
         if tree is None:
             return values
         for node, path in _aov_nodes(tree, ()):
@@ -61,7 +61,7 @@ class AovReader:
 
 def warn_world(engine: Any, world: Any | None, columns: list[ValueColumn]) -> None:
     """Names the AOVs that the world would show behind everything."""
-    tree = None if world is None else compat.world_nodes(world)
+    tree = None if world is None else compat.shader_nodes(world)
     said = {compat.aov_name(node) for node, _ in _aov_nodes(tree, ())} if tree else set()
     for column in columns:
         if column.aov in said:

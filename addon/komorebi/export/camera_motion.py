@@ -17,7 +17,7 @@ class CameraMotion:
     def __init__(self, engine: Any, depsgraph: Any, view: str, shutter: Shutter | None) -> None:
         self._engine, self._depsgraph, self._view = engine, depsgraph, view
         self.data: CameraData = export_camera(engine, depsgraph, view)
-        self.times: list[float] = []
+        self.times: tuple[float, ...] = ()
         if shutter is None:
             return
         # A marker within the shutter's time may bind another camera: the one at rest stays.

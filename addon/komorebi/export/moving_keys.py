@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from .. import core, mesh_cache
-from ..scene_data import CurveData, FloatArray, PointData
+from ..scene_data import CurveData, PointData
+from .moving_shape import MovingShape
 
 Keys = CurveData | PointData
 
@@ -17,7 +18,7 @@ Keys = CurveData | PointData
 STILL = 1e-5
 
 
-class MovingKeys:
+class MovingKeys(MovingShape):
     """Curves or points as they are at rest and at the other times."""
 
     changed = "the number of its strands or points changes"
@@ -39,12 +40,6 @@ class MovingKeys:
         self.seen[time] = keys
         return True
 
-    def take_velocity(self, reach: FloatArray, is_open: bool) -> None:
-        """They have moved by `reach` [keys, 3] when the shutter closes, and by its opposite when
-        it opens."""
-        rest = self.data.positions
-        self._set_positions(np.stack([rest - reach, rest + reach]), is_open)
-
     def take_seen(self, is_open: bool) -> None:
         """What was seen becomes motion, if there is any."""
         seen = [self.seen[time] for time in self.times]
@@ -58,12 +53,6 @@ class MovingKeys:
 
     def set_key(self) -> None:
         self.data.key = mesh_cache.round_key(core.load(), self.data)
-
-    def _set_positions(self, positions: FloatArray, is_open: bool) -> None:
-        if is_open:
-            self.data.motion_positions = positions
-        else:
-            self.data.step_positions = positions
 
 
 def differ(rest: Keys, other: Keys) -> bool:

@@ -10,9 +10,10 @@ import numpy as np
 from .. import compat, core, mesh_cache
 from ..scene_data import FloatArray, MeshData, MeshKey
 from .mesh import MeshReader
+from .moving_shape import MovingShape
 
 
-class MovingMesh:
+class MovingMesh(MovingShape):
     """A mesh as it is at rest and at the other times."""
 
     changed = "its faces change"
@@ -41,12 +42,6 @@ class MovingMesh:
         self.seen[time] = seen
         return True
 
-    def take_velocity(self, reach: FloatArray, is_open: bool) -> None:
-        """Vertices have moved by `reach` [vertices, 3] when the shutter closes, and by its opposite
-        when it opens."""
-        rest = self.data.positions
-        self._set_positions(np.stack([rest - reach, rest + reach]), is_open)
-
     def take_seen(self, is_open: bool) -> None:
         """What was seen becomes motion, if there is any."""
         seen = [self.seen[time] for time in self.times]
@@ -67,9 +62,3 @@ class MovingMesh:
         geometry = b"" if moved is None else digest((moved,))
         shading = b"" if moved is None and steps is None else digest((turned, steps))
         self.data.key = MeshKey(self._rest.geometry + geometry, self._rest.shading + shading)
-
-    def _set_positions(self, positions: FloatArray, is_open: bool) -> None:
-        if is_open:
-            self.data.motion_positions = positions
-        else:
-            self.data.step_positions = positions

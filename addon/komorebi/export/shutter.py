@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -75,9 +76,10 @@ def export_shutter(scene: Any, view_layer: Any, sources: Any) -> Shutter | None:
     return None
 
 
-def times(steps: int) -> list[float]:
-    """The relative times of so many poses."""
-    return [2.0 * step / (steps - 1) - 1.0 for step in range(steps)]
+@cache
+def times(steps: int) -> tuple[float, ...]:
+    """The relative times of so many poses; asked for each instance."""
+    return tuple(2.0 * step / (steps - 1) - 1.0 for step in range(steps))
 
 
 def _numbers(scene: Any) -> dict[str, Any] | None:

@@ -28,7 +28,7 @@ def export_world(engine: Any, world: Any | None) -> WorldData:
     """What a ray that hits nothing sees; no world at all is black."""
     if world is None:
         return WorldData()
-    tree = compat.world_nodes(world)
+    tree = compat.shader_nodes(world)
     if tree is None:
         return WorldData(color=_rgb(world.color))
     return _WorldReader(engine, world).read(tree)

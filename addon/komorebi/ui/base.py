@@ -59,7 +59,7 @@ def cycles(owner: Any, group: str = "cycles") -> Any | None:
 def draw_surface(layout: Any, owner: Any, plain: str) -> None:
     """The nodes that feed the surface of a world or material, or its colour `plain`."""
     layout.use_property_split = True
-    tree = compat.world_nodes(owner)
+    tree = compat.shader_nodes(owner)
     if tree is None:
         layout.prop(owner, "use_nodes", icon="NODETREE")
         layout.prop(owner, plain, text="Color")
