@@ -18,6 +18,7 @@ namespace py = pybind11;
 // One function a part of the module, each in a file of its own.
 void bind_scene(py::module_& module);
 void bind_session(py::module_& module);
+void bind_shader(py::module_& module);
 
 /// Curves and points, which Mesh holds too.
 void bind_round(py::class_<Mesh, std::shared_ptr<Mesh>>& mesh);

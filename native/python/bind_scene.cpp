@@ -11,6 +11,7 @@
 #include "python/camera_input.h"
 #include "render/content_hash.h"
 #include "render/scene.h"
+#include "render/world_program.h"
 
 namespace komorebi::python {
 namespace {
@@ -94,6 +95,15 @@ std::shared_ptr<Environment> environment_from_pixels(const std::string& name,
   const py::gil_scoped_release release;
   return std::make_shared<Environment>(name, width, height,
                                        std::vector<float>(values.begin(), values.end()));
+}
+
+std::shared_ptr<Environment> environment_from_program(const Program& program, std::uint32_t width,
+                                                      std::uint32_t height, unsigned threads,
+                                                      const std::shared_ptr<Cancel>& cancel) {
+  const py::gil_scoped_release release;
+  return std::make_shared<Environment>(
+      program.name(), width, height,
+      world_texels(program, width, height, *build_pool(threads), cancel_or_never(cancel)));
 }
 
 void add_instances(Scene& scene, std::uint32_t mesh, const py::array& matrices,
@@ -259,6 +269,11 @@ void bind_environment(py::module_& module) {
                   "Reads any image that OpenImageIO can; RuntimeError naming the file.")
       .def_static("from_pixels", &environment_from_pixels, py::arg("name"), py::arg("pixels"),
                   "float32 [H, W, 3], linear Rec. 709, row 0 at the bottom.")
+      .def_static("from_program", &environment_from_program, py::arg("program"), py::arg("width"),
+                  py::arg("height"), py::arg("threads") = 0,
+                  py::arg("cancel") = std::shared_ptr<Cancel>(),
+                  "The first three outputs of a world's program, run over the texels' directions. "
+                  "Raises Cancelled.")
       .def_property_readonly("width", &Environment::width)
       .def_property_readonly("height", &Environment::height)
       .def_property_readonly("nonfinite_texels", &Environment::nonfinite_texels)
@@ -316,6 +331,14 @@ void bind_scene(py::module_& module) {
       .def("set_world_environment", &set_world_environment, py::arg("environment"),
            py::arg("strength") = 1.0, py::arg("texture_from_world") = py::none(),
            "texture_from_world: rotation, float64 [3, 3].")
+      .def(
+          "set_world_program",
+          [](Scene& scene, std::shared_ptr<Program> program) {
+            scene.set_world_program(std::move(program));
+          },
+          py::arg("program"),
+          "What camera rays see behind the scene, in place of the colour or map that lights it: a "
+          "program with three outputs, radiance.")
       .def("set_camera", &set_camera, py::arg("kind"), py::arg("matrix"), py::arg("clip_start"),
            py::arg("clip_end"), py::arg("width"), py::arg("height"), py::kw_only(),
            py::arg("lens") = py::none(), py::arg("panorama") = py::none(),

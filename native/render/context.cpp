@@ -36,6 +36,7 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.scene = scene.view();
   context.camera = scene.camera();
   context.environment = scene.environment();
+  context.world_program = scene.world_program();
   context.sky = ao ? constant_environment(Vec3(1.0f)) : context.environment;
   context.filter = filter;
   context.method = settings.method;

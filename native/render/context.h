@@ -15,7 +15,8 @@ namespace komorebi {
 struct RenderContext {
   SceneView scene;
   CameraView camera;
-  EnvironmentView environment;  ///< what is seen behind the scene
+  EnvironmentView environment;  ///< what is seen behind the scene, unless a program says it
+  const Program* world_program = nullptr;
   EnvironmentView sky;          ///< what lights it: the same, or white for ambient occlusion
   ProductView product;          ///< bins = 0: light rays are drawn by cosine_share
   FilterView filter;

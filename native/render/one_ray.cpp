@@ -4,6 +4,7 @@
 #include "render/ambient.h"
 #include "render/light.h"
 #include "render/pass_row.h"
+#include "render/world_program.h"
 
 namespace komorebi {
 
@@ -23,7 +24,7 @@ Ray start_ray(const RenderContext& context, std::uint32_t x, std::uint32_t y,
 PixelSample background(const RenderContext& context, const Vec3& direction) {
   PixelSample result;
   if (context.transparent) return result;
-  result.radiance = environment_radiance(context.environment, direction);
+  result.radiance = world_radiance(context, direction);
   result.alpha = 1.0f;
   return result;
 }

@@ -6,6 +6,7 @@
 
 #include "core/motion_vector.h"
 #include "core/surface_point.h"
+#include "render/world_program.h"
 
 namespace komorebi {
 namespace {
@@ -133,7 +134,7 @@ void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, c
 void put_environment(const RenderContext& context, const Vec3& direction, float* row) {
   if (!context.passes.keeps(Quantity::kEnvironment)) return;
   context.passes.put(row, Quantity::kEnvironment,
-                     environment_radiance(context.environment, direction));
+                     world_radiance(context, direction));
 }
 
 void put_matte(const PassLayout& layout, const PixelSample& sample, float* row) {

@@ -149,6 +149,14 @@ void Scene::set_world_environment(std::shared_ptr<const Environment> environment
   texture_from_world_ = texture_from_world;
 }
 
+void Scene::set_world_program(std::shared_ptr<const Program> program) {
+  require_open();
+  if (program && program->output_count() != 3) {
+    throw std::invalid_argument(program->name() + ": a world has three outputs, its radiance");
+  }
+  world_program_ = std::move(program);
+}
+
 void Scene::set_camera(const CameraDesc& camera) {
   require_open();
   // Refuses what cannot be inverted.

@@ -14,6 +14,7 @@
 #include "render/instance_motion.h"
 #include "render/mesh.h"
 #include "render/scene_tables.h"
+#include "shader/program.h"
 
 namespace komorebi {
 
@@ -50,6 +51,9 @@ class Scene {
   void set_world_color(const Vec3& radiance);
   void set_world_environment(std::shared_ptr<const Environment> environment, double strength,
                              const Mat3d& texture_from_world);
+  /// What is seen behind the scene, of which the two above are what lights it: three outputs,
+  /// radiance. std::invalid_argument if there are not three.
+  void set_world_program(std::shared_ptr<const Program> program);
   void set_camera(const CameraDesc& camera);
   /// Throws std::invalid_argument when lists of slots name what is not there.
   void set_tables(SceneTables tables);
@@ -100,6 +104,7 @@ class Scene {
   const std::shared_ptr<const Environment>& world_environment() const { return environment_; }
   double world_strength() const { return strength_; }
   const Mat3d& texture_from_world() const { return texture_from_world_; }
+  const Program* world_program() const { return world_program_.get(); }
 
  private:
   void require_open() const;
@@ -122,6 +127,7 @@ class Scene {
   Vec3 world_color_{0.0f};
   std::shared_ptr<const Environment> environment_;
   double strength_ = 1.0;
+  std::shared_ptr<const Program> world_program_;
   Mat3d texture_from_world_{1.0};
   CameraDesc camera_desc_;
   SceneTables tables_;

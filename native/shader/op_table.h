@@ -1,0 +1,16 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "shader/op.h"
+
+namespace komorebi {
+
+/// @returns null if there is no such operation
+const OpInfo* find_op(std::string_view name);
+
+// The families of operations, each in a file of its own (ops_*.cpp).
+std::span<const OpInfo> arithmetic_ops();
+
+}  // namespace komorebi

@@ -1,0 +1,61 @@
+#include "shader/program.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace komorebi {
+
+bool Program::constant() const {
+  return std::all_of(outputs_.begin(), outputs_.end(),
+                     [](const Source& s) { return s.row == kNoRow; });
+}
+
+void Program::run(const ShadePoints& points, Scratch& scratch, float* const* out) const {
+  const std::uint32_t count = points.count;
+  if (scratch.rows_.size() < std::size_t{row_count_} * kLanes) {
+    scratch.rows_.resize(std::size_t{row_count_} * kLanes);
+  }
+  float* const rows = scratch.rows_.data();
+  const auto row = [&](std::uint32_t index) { return rows + std::size_t{index} * kLanes; };
+  for (std::size_t i = 0; i < constants_.size(); ++i) {
+    std::fill_n(row(static_cast<std::uint32_t>(i)), count, constants_[i]);
+  }
+  const float* in[kMostInputs];
+  float* to[kMostOutputs];
+  for (const Step& step : steps_) {
+    const std::uint32_t* index = &rows_[step.first_row];
+    if (step.kind == Kind::kInput) {
+      const std::uint32_t width = kPointInputInfo[step.which].width;
+      for (std::uint32_t c = 0; c < width; ++c) {
+        std::copy_n(points.input[step.which][c], count, row(index[c]));
+      }
+      continue;
+    }
+    if (step.kind == Kind::kAttribute) {
+      for (std::uint32_t c = 0; c < 4; ++c) {
+        std::copy_n(points.attribute[step.which][c], count, row(index[c]));
+      }
+      continue;
+    }
+    for (std::uint32_t i = 0; i < step.op->inputs; ++i) in[i] = row(*index++);
+    for (std::uint32_t i = 0; i < step.op->outputs; ++i) to[i] = row(*index++);
+    OpCall call;
+    call.count = count;
+    call.in = in;
+    call.out = to;
+    call.numbers = numbers_.data() + step.first_number;
+    call.table = {tables_.data() + step.first_table, step.table_size};
+    call.texture = step.texture;
+    call.points = &points;
+    step.op->run(call);
+  }
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    if (outputs_[i].row == kNoRow) {
+      std::fill_n(out[i], count, outputs_[i].constant);
+    } else {
+      std::copy_n(row(outputs_[i].row), count, out[i]);
+    }
+  }
+}
+
+}  // namespace komorebi
