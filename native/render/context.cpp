@@ -79,6 +79,8 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
       context.lifts_rays || context.cuts_cosines || (lifts && context.passes.keeps_ambient());
   context.bends_round = context.lifts_rays && !ao;
   context.origin = scene.origin();
+  context.frame_width = static_cast<float>(scene.camera_desc().width);
+  context.frame_height = static_cast<float>(scene.camera_desc().height);
   context.first_sample = settings.sample_offset;
   context.mist_start = settings.mist_start;
   context.mist_depth = settings.mist_depth;

@@ -17,8 +17,8 @@ struct RenderContext {
   CameraView camera;
   EnvironmentView environment;  ///< what is seen behind the scene, unless a program says it
   const Program* world_program = nullptr;
-  EnvironmentView sky;          ///< what lights it: the same, or white for ambient occlusion
-  ProductView product;          ///< bins = 0: light rays are drawn by cosine_share
+  EnvironmentView sky;  ///< what lights it: the same, or white for ambient occlusion
+  ProductView product;  ///< bins = 0: light rays are drawn by cosine_share
   FilterView filter;
   Method method = Method::kAmbientOcclusion;
   AoSampling ao_sampling = AoSampling::kCosine;
@@ -43,9 +43,10 @@ struct RenderContext {
   StepsView steps;
   bool has_vector = false;  ///< whether that pass is kept and not black, as where motion is blurred
 
-  PassLayout passes;                    ///< what is kept besides radiance and alpha
-  const SceneTables* tables = nullptr;  ///< for passes that tell what is seen
-  Vec3d origin{0.0};                    ///< of the scene's space in Blender's
+  PassLayout passes;                              ///< what is kept besides radiance and alpha
+  const SceneTables* tables = nullptr;            ///< for passes that tell what is seen
+  Vec3d origin{0.0};                              ///< of the scene's space in Blender's
+  float frame_width = 1.0f, frame_height = 1.0f;  ///< of the whole frame, in pixels
   std::uint32_t first_sample = 0;
   float ao_distance = 0.0f;  ///< largest t of a ray for ambient occlusion, whatever the method
   float mist_start = 0.0f, mist_depth = 0.0f;

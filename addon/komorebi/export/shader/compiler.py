@@ -54,6 +54,7 @@ class Compiler:
         self.is_world = is_world
         self.owner = owner  # how warnings begin: world "World"
         self.map_size = 0  # columns of the largest environment map
+        self.notes: set[str] = set()  # what is rendered as something simpler, by design
         self._engine = engine
         self._groups: tuple[Any, ...] = ()  # group nodes that we are inside of, the outermost first
         self._done: dict[tuple[Any, ...], Outputs] = {}
@@ -64,6 +65,10 @@ class Compiler:
     def warn(self, node: Any, what: str) -> None:
         label = node.bl_label or node.type
         reporting.warn(self._engine, f'{self.owner}, node "{name_of(node)}" ({label}): {what}')
+
+    def note(self, what: str) -> None:
+        """For the statistics, not a warning: the engine means to render it as something simpler."""
+        self.notes.add(what)
 
     def is_linked(self, socket: Any) -> bool:
         return self._source(socket) is not None
@@ -174,7 +179,7 @@ class Compiler:
         return outputs
 
     def _unknown(self, node: Any) -> Outputs:
-        """A node that nobody knows passes on its first input of the same type, or all its shaders."""
+        """A node that nobody knows passes on an input of the same type, or all its shaders."""
         outputs: Outputs = {}
         for socket in node.outputs:
             if socket.type == "SHADER":
