@@ -52,7 +52,7 @@ void expect_cavity(Settings settings, double albedo, std::uint32_t bounces) {
   const double first = settings.method == Method::kWorldLight ? albedo : 1.0;
   const double exact = cavity_light(albedo, first, hollow.open, bounces);
   EXPECT_NEAR(e.mean, exact, 4.0 * e.error + 1e-3 * exact) << bounces << " bounces";
-  EXPECT_LT(e.error, 2e-3 * exact);
+  EXPECT_LT(e.error, 5e-3 * exact);
 }
 
 TEST(Bounces, InACavityAreAGeometricSeries) {
@@ -124,6 +124,7 @@ Estimate traced_by_brute_force(const Scene& scene, const Vec3& albedo, std::uint
     Ray ray;
     ray.origin = Vec3(static_cast<float>(-1.25 + 0.1 * unit(random)),
                       static_cast<float>(1.45 + 0.1 * unit(random)), 0.1f);
+    ray.origin = Vec3(Vec3d(ray.origin) - scene.origin());
     ray.direction = Vec3(0, 0, -1);
     double throughput = 1.0, brought = 0.0;
     for (std::uint32_t vertex = 0;; ++vertex) {
@@ -192,7 +193,7 @@ TEST(Bounces, OfSurfacesWithMaterialsAreThoseOfClay) {
   ASSERT_TRUE(BatchIntegrator(materials).sample(pixels, kCount, found.data(), Cancel()));
   for (std::size_t i = 0; i < found.size(); ++i) {
     const PixelPlace at = pixels[i / kCount];
-    EXPECT_EQ(found[i], render_sample(materials, at.x, at.y, i % kCount, nullptr).radiance);
+    EXPECT_EQ(found[i], render_sample(materials, at.x, at.y, static_cast<std::uint32_t>(i % kCount), nullptr).radiance);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[i][c], expected[i][c], 1e-5f * expected[i][c]);
   }
 }
