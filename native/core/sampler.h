@@ -17,14 +17,15 @@ inline constexpr std::uint32_t kDimensionsPerVertex = 16;
 /// Within a vertex's block.
 enum VertexDimension : std::uint32_t {
   kVertexLightDirection = 0,  ///< 0–1: direction of a light ray
-  kVertexLightChoice = 2,     ///< which strategy or light; 3 reserved
+  kVertexLightChoice = 2,     ///< which strategy or light
+  kVertexRoulette = 3,        ///< whether the path goes on from here
   kVertexScatter = 4,         ///< 4–5: direction of the next bounce
   kVertexAmbient = 6,         ///< 6–7: direction of a ray for ambient occlusion beside light rays
   kVertexLobe = 8,            ///< which part of a surface's light; 9–15 reserved
 };
 
 /// The dimension of use `use` at path vertex `vertex` (0: where the camera ray hits). Light ray j
-/// of n of camera sample i takes index i·n + j in these dimensions.
+/// of n of camera sample i takes index i·n + j in these dimensions; where a path goes on, i.
 inline std::uint32_t vertex_dimension(std::uint32_t vertex, VertexDimension use) {
   return kDimensionVertex + vertex * kDimensionsPerVertex + use;
 }
