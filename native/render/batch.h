@@ -11,6 +11,7 @@
 #include "render/film.h"
 #include "render/light_caster.h"
 #include "render/ray_batch.h"
+#include "render/shade.h"
 #include "render/surface_batch.h"
 
 namespace komorebi {
@@ -75,6 +76,7 @@ class BatchIntegrator {
   RayBatch camera_rays_;
   std::vector<Hit> hits_;
   SurfaceBatch surfaces_;
+  BatchShader shader_;
   std::vector<PixelSample> results_;
   std::vector<float> rows_;  // [paths][context_.passes.size()]
   AmbientPasses of_light_;   // passes that light rays fill

@@ -30,8 +30,7 @@ void BounceTracer::leave(std::uint32_t vertex, const SurfaceBatch& surfaces, std
   point.time = surfaces.time(surface);
   point.instance = surfaces.instance(surface);
   point.primitive = surfaces.primitive(surface);
-  Sampler sampler(0, 0, 0);
-  sampler.pixel_seed = state.pixel_seed;
+  const Sampler sampler(state.pixel_seed);
   Ray ray;
   if (!scatter(context_, vertex, point, sampler, state.sample, state.throughput, ray)) return;
   next_rays_.push(ray);
@@ -50,7 +49,7 @@ bool BounceTracer::find_surfaces(std::uint32_t vertex, const Cancel& cancel) {
     surfaces_.push(i, hits_[i], rays.time[i], state.pixel_seed, state.sample * kLaterLightSamples);
   }
   surfaces_.fill(context_, hits_.data(), rays);
-  shade_surfaces(context_, vertex, surfaces_);
+  shader_.shade(context_, vertex, hits_.data(), rays, kLaterLightSamples, surfaces_);
   light_.assign(surfaces_.size(), Vec3(0.0f));
   caster_.set_light_dimension(vertex_dimension(vertex, kVertexLightDirection));
   const std::uint32_t size = caster_.block_size();

@@ -7,6 +7,7 @@
 #include "render/light_caster.h"
 #include "render/ray_batch.h"
 #include "render/scatter.h"
+#include "render/shade.h"
 
 namespace komorebi {
 
@@ -44,6 +45,7 @@ class BounceTracer {
   std::vector<State> states_, next_states_;  // of each ray
   std::vector<Hit> hits_;
   SurfaceBatch surfaces_;
+  BatchShader shader_;
   std::vector<Vec3> light_;  // mean of the light rays of each surface
   std::uint64_t ray_count_ = 0;
 };

@@ -24,4 +24,19 @@ SurfaceProgram::SurfaceProgram(std::shared_ptr<const Program> of,
   }
 }
 
+bool is_plain(const Material& material, Vec3* albedo) {
+  const SurfaceProgram& surface = material.camera;
+  if (!surface.program || material.clear || material.bounce.program) return false;
+  if (!surface.program->constant() || surface.lobes.size() != 1) return false;
+  if (surface.lobes[0].transmits || surface.lobes[0].normal != kNone) return false;
+  for (std::uint32_t i = 0; i < SurfaceProgram::kFirstLobe; ++i) {
+    if (surface.program->constant_value(i) != 0.0f) return false;
+  }
+  for (std::uint32_t c = 0; c < 3; ++c) {
+    const float value = surface.program->constant_value(SurfaceProgram::kFirstLobe + c);
+    (*albedo)[static_cast<int>(c)] = value > 0.0f ? value : 0.0f;
+  }
+  return true;
+}
+
 }  // namespace komorebi

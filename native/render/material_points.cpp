@@ -61,30 +61,53 @@ Vec3 tangent(const Placed& placed, const ShadeTask& task) {
   return glm::cross(task.point.normal, detail::unit_or(side, Vec3(0.0f)));
 }
 
+/// The way back from the world to the film of a camera without a panorama's projection: where a
+/// point is seen, in pixels from the bottom left of the frame.
+class FilmPlace {
+ public:
+  explicit FilmPlace(const CameraView& camera)
+      : camera_(camera),
+        into_film_(glm::inverse(Mat3d(camera.per_x, camera.per_y, camera.direction))) {}
+
+  Vec2 of(const Vec3& world) const {
+    const Vec3d at = into_film_ * (Vec3d(world) - camera_.origin);
+    const double w = camera_.kind == CameraKind::kOrthographic ? 1.0 : at.z;
+    if (camera_.kind == CameraKind::kPanorama || !(std::abs(w) > 0.0)) return Vec2(0.0f);
+    return Vec2(static_cast<float>(at.x / w + camera_.film_center_x),
+                static_cast<float>(at.y / w + camera_.film_center_y));
+  }
+
+ private:
+  const CameraView& camera_;
+  Mat3d into_film_;
+};
+
 /// How far the point moves in its surface when the ray's pixel moves by one to the right or up: of
 /// a camera ray by the neighbouring pixel's ray; after a bounce in some direction of the surface,
 /// as wide as a pixel would be so far away.
-void differentials(const RenderContext& context, const ShadeTask& task, Vec3& dx, Vec3& dy) {
+void differentials(const RenderContext& context, const FilmPlace& film, const ShadeTask& task,
+                   Vec3& dx, Vec3& dy) {
   const Vec3 normal = task.point.geometric_normal;
-  if (task.vertex > 0) {
-    const double width = std::sqrt(glm::dot(context.camera.per_x, context.camera.per_x));
+  if (task.vertex > 0 || context.camera.kind == CameraKind::kPanorama) {
+    const double width = context.camera.kind == CameraKind::kPanorama
+                             ? 2.0 * kPi / static_cast<double>(context.frame_width)
+                             : std::sqrt(glm::dot(context.camera.per_x, context.camera.per_x));
     const Frame frame = make_frame(normal);
     const float radius = task.hit.t * static_cast<float>(width);
     dx = radius * frame.tangent;
     dy = radius * frame.bitangent;
     return;
   }
-  const Vec2 middle(static_cast<float>(task.x) + 0.5f, static_cast<float>(task.y) + 0.5f);
-  const auto meets = [&](const Vec2& film) {
-    const Ray ray = camera_ray(context.camera, film, Vec2(0.5f), task.time);
+  const Vec2 middle = film.of(task.point.position);
+  const auto meets = [&](const Vec2& at) {
+    const Ray ray = camera_ray(context.camera, at, Vec2(0.5f), task.time);
     const float down = glm::dot(ray.direction, normal);
     if (!(down < -1e-4f)) return task.point.position;
     const float t = glm::dot(task.point.position - ray.origin, normal) / down;
     return ray.origin + t * ray.direction;
   };
-  const Vec3 here = meets(middle);
-  dx = meets(middle + Vec2(1.0f, 0.0f)) - here;
-  dy = meets(middle + Vec2(0.0f, 1.0f)) - here;
+  dx = meets(middle + Vec2(1.0f, 0.0f)) - task.point.position;
+  dy = meets(middle + Vec2(0.0f, 1.0f)) - task.point.position;
 }
 
 }  // namespace
@@ -121,9 +144,10 @@ const ShadePoints& MaterialPoints::fill(const RenderContext& context, const Prog
   put(PointInput::kCamera, [&](const ShadeTask& t) {
     return Vec3((Vec3d(t.point.position) - context.camera.origin) * camera_axes(context.camera));
   });
+  const FilmPlace film(context.camera);
   put(PointInput::kWindow, [&](const ShadeTask& t) {
-    return Vec3((static_cast<float>(t.x) + 0.5f) / context.frame_width,
-                (static_cast<float>(t.y) + 0.5f) / context.frame_height, 0.0f);
+    const Vec2 at = film.of(t.point.position);
+    return Vec3(at.x / context.frame_width, at.y / context.frame_height, 0.0f);
   });
   put(PointInput::kParametric, [](const ShadeTask& t) { return Vec3(t.hit.u, t.hit.v, 0.0f); });
   put(PointInput::kTangent, [&](const ShadeTask& t) { return tangent(Placed(context, t), t); });
@@ -144,7 +168,7 @@ const ShadePoints& MaterialPoints::fill(const RenderContext& context, const Prog
   put_float(PointInput::kRayLength, [](const ShadeTask& t) { return t.hit.t; });
   if (program.asks(PointInput::kDx) || program.asks(PointInput::kDy)) {
     Vec3 dx[Program::kLanes], dy[Program::kLanes];
-    for (std::uint32_t i = 0; i < count; ++i) differentials(context, tasks[i], dx[i], dy[i]);
+    for (std::uint32_t i = 0; i < count; ++i) differentials(context, film, tasks[i], dx[i], dy[i]);
     put(PointInput::kDx, [&](const ShadeTask& t) { return dx[&t - tasks]; });
     put(PointInput::kDy, [&](const ShadeTask& t) { return dy[&t - tasks]; });
   }
