@@ -141,7 +141,8 @@ def _expected_rays(frame: Frame) -> float:
     settings = frame.settings
     light = settings["light_samples"] or core.load().AUTOMATIC_LIGHT_SAMPLES
     pixels = (x_max - x_min) * (y_max - y_min) * len(frame.views)
-    return float(pixels) * settings["samples"] * (1 + light)
+    per_bounce = 2  # the one that finds the next surface, and its light ray
+    return float(pixels) * settings["samples"] * (1 + light + per_bounce * settings["bounces"])
 
 
 def _native_work(engine: Any, cancel: Any, work: Callable[[], T]) -> T:

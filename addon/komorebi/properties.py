@@ -127,6 +127,31 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         name="Clay Color", description="Colour of every surface under clay",
         subtype="COLOR", size=3, default=(0.8, 0.8, 0.8), min=0.0, max=1.0,
     )  # fmt: skip
+    bounces: IntProperty(
+        name="Bounces",
+        description="How often light goes from surface to surface under World Light: 0 is what comes "
+        "straight from the world; each more brightens what faces other surfaces",
+        default=2, min=0, max=1024, soft_max=16,
+    )  # fmt: skip
+    # Not Blender's ao_bounces, which are those of Fast GI.
+    ao_indirect_bounces: IntProperty(
+        name="Bounces",
+        description="How often the white sky's light goes from surface to surface before it comes to "
+        "what is seen: 0 is plain ambient occlusion",
+        default=0, min=0, max=1024, soft_max=16,
+    )  # fmt: skip
+    sample_clamp_direct: FloatProperty(
+        name="Direct Light",
+        description="Most that a sample may bring without a bounce, to the picture too: takes away "
+        "bright specks, and light with them; 0 is no limit",
+        default=0.0, min=0.0, max=1e8,
+    )  # fmt: skip
+    sample_clamp_indirect: FloatProperty(
+        name="Indirect Light",
+        description="Most that a sample may bring after each bounce: takes away bright specks, and "
+        "light with them; 0 is no limit",
+        default=10.0, min=0.0, max=1e8,
+    )  # fmt: skip
     environment_sampling: EnumProperty(
         name="Environment Sampling", description="How rays towards the world are chosen",
         items=ENVIRONMENT_SAMPLINGS, default="PRODUCT",

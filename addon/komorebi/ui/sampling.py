@@ -95,6 +95,7 @@ class KOMOREBI_RENDER_PT_ambient_occlusion(KomorebiPanel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         column = self.column()
         column.prop(context.scene.komorebi, "ao_distance")
+        column.prop(context.scene.komorebi, "ao_indirect_bounces")
         column.prop(context.scene.komorebi, "ao_sampling")
 
 
