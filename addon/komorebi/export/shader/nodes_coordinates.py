@@ -270,7 +270,7 @@ def _by_camera(compiler: Compiler, vector: Value, is_point: bool, *, back: bool)
     if compiler.camera_from_world is None:
         return vector
     matrix = np.eye(4)
-    matrix[:3] = np.asarray(compiler.camera_from_world, np.float64)
+    matrix[:3] = np.asarray(compiler.camera_from_world, np.float64)[:3]
     if back:
         matrix = np.linalg.inv(matrix)
     if not is_point:
