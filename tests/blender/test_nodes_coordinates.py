@@ -11,7 +11,10 @@ def test_world_coordinates():
     bpy.context.scene.collection.objects.link(thing)
     thing.location, thing.scale, thing.rotation_euler = (0.2, 0.3, -0.1), (2, 1, 3), (0.4, 1, 2)
     bpy.context.view_layer.update()
-    for output in ("Generated", "Normal", "UV", "Object", "Reflection"):
+    bpy.context.scene.camera.matrix_world = ((0, 0, 1, 1), (1, 0, 0, 2), (0, 1, 0, 3), (0, 0, 0, 1))
+    for output in ("View Vector", "View Z Depth", "View Distance"):
+        compare(stage, lambda s, o=output: s.new("CameraData").outputs[o], f"World {output}")
+    for output in ("Generated", "Normal", "UV", "Object", "Reflection", "Camera"):
         compare(stage, lambda s, o=output: s.new("TexCoord").outputs[o], f"World {output}")
     compare(stage, lambda s: s.new("TexCoord", object=thing).outputs["Object"], "World Other")
     for output in ("Position", "Normal", "True Normal", "Incoming", "Parametric", "Backfacing"):
@@ -93,7 +96,8 @@ def test_vector_rotate():
 
 
 def test_vector_transform():
-    for stage in (Stage(), Stage(bowl())):
+    for surface in (None, bowl):
+        stage = Stage(surface and surface())
         for kind in ("VECTOR", "POINT", "NORMAL"):
             for source in ("WORLD", "OBJECT", "CAMERA"):
                 for target in ("WORLD", "OBJECT", "CAMERA"):

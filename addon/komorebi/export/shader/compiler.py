@@ -54,7 +54,8 @@ class Compiler:
         self.is_world = is_world
         self.owner = owner  # how warnings begin: world "World"
         self.map_size = 0  # columns of the largest environment map
-        # [3, 4] rows of the matrix into the camera's space (right, up, depth), where it is known
+        # [3, 4] rows of the matrix into the camera's space (right, up, depth; a
+        # panorama's: depth, left, up), where it is known
         self.camera_from_world: Any = None
         # what is compiled for a point aside: "dx" or "dy", and how many such steps
         self.shift: tuple[str, Value] | None = None

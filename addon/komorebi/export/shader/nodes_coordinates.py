@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ... import compat
 from ..mapping import euler_matrix
 from .compiler import Compiler, Outputs, node
 from .values import Value
@@ -110,7 +111,7 @@ def texture_coordinate(compiler: Compiler, node: Any) -> Outputs:
         "Normal": normal if compiler.is_world else b.input("object_normal"),
         "UV": attribute(compiler, "uv:")[:3],
         "Object": point,
-        "Camera": b.input("camera"),
+        "Camera": _in_camera(compiler, is_point=False),
         "Window": b.input("window"),
         "Reflection": mirrored,
     }
@@ -185,7 +186,7 @@ def object_info(compiler: Compiler, _node: Any) -> Outputs:
 @node("CAMERA")
 def camera_data(compiler: Compiler, _node: Any) -> Outputs:
     b = compiler.builder
-    place = b.input("camera")
+    place = _in_camera(compiler, is_point=True)
     return {
         "View Vector": b.op("normalize", place, 3),
         "View Z Depth": place[2:],
@@ -259,9 +260,9 @@ def vector_transform(compiler: Compiler, node: Any) -> Outputs:
             if is_point:
                 vector = b.subtract(vector, b.input("object_location"))
             vector = b.op("to_axes", vector + axes(compiler), 3)
-        elif target == "CAMERA" and (source == "WORLD" or not compiler.is_world):
+        elif target == "CAMERA":
             vector = _by_camera(compiler, vector, is_point, back=False)
-    if node.vector_type == "NORMAL":
+    if node.vector_type == "NORMAL" and (source != target or compat.SAME_SPACE_NORMALIZES):
         vector = b.op("normalize", vector, 3)
     return {node.outputs[0].identifier: vector}
 
@@ -276,6 +277,13 @@ def _by_camera(compiler: Compiler, vector: Value, is_point: bool, *, back: bool)
     if not is_point:
         matrix[:3, 3] = 0.0
     return compiler.builder.op("transform", vector, 3, numbers=_matrix(matrix))
+
+
+def _in_camera(compiler: Compiler, *, is_point: bool) -> Value:
+    """Where the camera has the point; of a world the direction, or what lies at its end."""
+    if compiler.is_world and compiler.camera_from_world is not None:
+        return _by_camera(compiler, position(compiler), is_point, back=False)
+    return compiler.builder.input("camera")
 
 
 @node("NORMAL")
