@@ -9,6 +9,12 @@
 
 namespace komorebi {
 
+/// What a surface does with light: the share of each channel that it reflects, and what it shines.
+struct Shading {
+  Vec3 albedo{1.0f};
+  Vec3 emission{0.0f};
+};
+
 /// Owns the arrays behind a SurfaceBlock: the surfaces that a batch of camera rays has hit, and
 /// where their light rays stand in their pixels' sequences. Grows once.
 class SurfaceBatch {
@@ -36,6 +42,25 @@ class SurfaceBatch {
   float cutoff(std::uint32_t i) const { return floats_[17][i]; }
   float frequency(std::uint32_t i) const { return floats_[18][i]; }
   Vec3 leaving_origin(std::uint32_t i) const { return vector(6, i); }
+
+  void make_room_for_shading() {
+    for (auto& column : shading_) {
+      if (column.size() < path_.size()) column.resize(path_.size());
+    }
+  }
+  void set_shading(std::uint32_t i, const Shading& shading) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      shading_[c][i] = shading.albedo[static_cast<int>(c)];
+      shading_[3 + c][i] = shading.emission[static_cast<int>(c)];
+    }
+  }
+  /// What shade_surfaces has set.
+  Vec3 albedo(std::uint32_t i) const {
+    return Vec3(shading_[0][i], shading_[1][i], shading_[2][i]);
+  }
+  Shading shading(std::uint32_t i) const {
+    return {albedo(i), Vec3(shading_[3][i], shading_[4][i], shading_[5][i])};
+  }
 
   void push(std::uint32_t path, const Hit& hit, float time, std::uint32_t pixel_seed,
             std::uint32_t first_index) {
@@ -116,6 +141,7 @@ class SurfaceBatch {
   // normal, geometric normal, leaving origin, depth, time, the normal above which light comes, and
   // the terminator's lift, cutoff and frequency
   std::vector<float> floats_[19];
+  std::vector<float> shading_[6];  // albedo and emission, once they are asked for
 };
 
 }  // namespace komorebi

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from .. import compat
-from ..denoise.run import GUIDE
+from ..denoise.run import GUIDES
 from ..passes import Pass, sources
 
 # An odd multiplier far from any pattern (2³² / golden ratio): neighbouring frames get seeds that
@@ -56,7 +56,7 @@ def export_settings(
         # With -t on the command line Blender answers FIXED and that number.
         "threads": render.threads if render.threads_mode == "FIXED" else 0,
         "region": region,
-        "passes": sources(passes, *([GUIDE] if settings.use_denoising else [])),
+        "passes": sources(passes, *(GUIDES if settings.use_denoising else ())),
     }
     if mist is not None:
         exported |= {

@@ -7,6 +7,7 @@ from . import (  # noqa: F401  they register functions of nodes
     nodes_curves,
     nodes_math,
     nodes_shading,
+    nodes_surface,
 )
 from .compiler import Compiler, Ray
 

@@ -59,6 +59,7 @@ class Compiler:
         self.camera_from_world: Any = None
         # what is compiled for a point aside: "dx" or "dy", and how many such steps
         self.shift: tuple[str, Value] | None = None
+        self.notes: set[str] = set()  # what is rendered as something simpler, by design
         self._engine = engine
         self._groups: tuple[Any, ...] = ()  # group nodes that we are inside of, the outermost first
         self._done: dict[tuple[Any, ...], Outputs] = {}
@@ -69,6 +70,10 @@ class Compiler:
     def warn(self, node: Any, what: str) -> None:
         label = node.bl_label or node.type
         reporting.warn(self._engine, f'{self.owner}, node "{name_of(node)}" ({label}): {what}')
+
+    def note(self, what: str) -> None:
+        """For the statistics, not a warning: the engine means to render it as something simpler."""
+        self.notes.add(what)
 
     def is_linked(self, socket: Any) -> bool:
         return self._source(socket) is not None
@@ -188,7 +193,7 @@ class Compiler:
         return outputs
 
     def _unknown(self, node: Any) -> Outputs:
-        """A node that nobody knows passes on its first input of the same type, or all its shaders."""
+        """A node that nobody knows passes on an input of the same type, or all its shaders."""
         outputs: Outputs = {}
         for socket in node.outputs:
             if socket.type == "SHADER":

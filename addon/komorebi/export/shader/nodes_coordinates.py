@@ -245,26 +245,32 @@ def vector_rotate(compiler: Compiler, node: Any) -> Outputs:
 def vector_transform(compiler: Compiler, node: Any) -> Outputs:
     b = compiler.builder
     vector = compiler.value(node.inputs[0])
-    is_point = node.vector_type == "POINT"
+    is_point, is_normal = (node.vector_type == kind for kind in ("POINT", "NORMAL"))
     source, target = node.convert_from, node.convert_to
     if "CAMERA" in (source, target) and source != target and compiler.camera_from_world is None:
         compiler.warn(node, "the camera is not known here, its space is taken as the world's")
-    if source != target:
-        if source == "OBJECT" and not compiler.is_world:
-            vector = b.op("from_axes", vector + axes(compiler), 3)
-            if is_point:
-                vector = b.add(vector, b.input("object_location"))
-        elif source == "CAMERA":
-            vector = _by_camera(compiler, vector, is_point, back=True)
-        if target == "OBJECT" and not compiler.is_world:
-            if is_point:
-                vector = b.subtract(vector, b.input("object_location"))
-            vector = b.op("to_axes", vector + axes(compiler), 3)
-        elif target == "CAMERA":
-            vector = _by_camera(compiler, vector, is_point, back=False)
-    if node.vector_type == "NORMAL" and (source != target or compat.SAME_SPACE_NORMALIZES):
-        vector = b.op("normalize", vector, 3)
-    return {node.outputs[0].identifier: vector}
+    if source == target:
+        if is_normal and compat.NORMALS_AS_DIRECTIONS:
+            vector = b.op("normalize", vector, 3)
+        return {node.outputs[0].identifier: vector}
+    by_transpose = is_normal and not compat.NORMALS_AS_DIRECTIONS
+    moved = vector
+    if source == "CAMERA":
+        moved = _by_camera(compiler, moved, is_point, back=True)
+    elif source == "OBJECT" and not compiler.is_world:
+        back = "normal_from_axes" if by_transpose else "from_axes"
+        moved = b.op(back, moved + axes(compiler), 3)
+        if is_point:
+            moved = b.add(moved, b.input("object_location"))
+    if target == "CAMERA":
+        moved = _by_camera(compiler, moved, is_point, back=False)
+    elif target == "OBJECT" and not compiler.is_world:
+        if is_point:
+            moved = b.subtract(moved, b.input("object_location"))
+        moved = b.op("normal_to_axes" if by_transpose else "to_axes", moved + axes(compiler), 3)
+    if is_normal and (moved is not vector or compat.NORMALS_AS_DIRECTIONS):
+        moved = b.op("normalize", moved, 3)
+    return {node.outputs[0].identifier: moved}
 
 
 def _by_camera(compiler: Compiler, vector: Value, is_point: bool, *, back: bool) -> Value:
