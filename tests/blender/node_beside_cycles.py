@@ -162,7 +162,9 @@ class Stage:
         rows |= {"object_location": matrix[:3, 3], "object_color": thing.color[:3],
                  "object_alpha": thing.color[3:], "object_index": [thing.pass_index],
                  "material_index": [thing.active_material.pass_index]}  # fmt: skip
-        return {name: np.tile(np.asarray(row, np.float32), (count, 1)) for name, row in rows.items()}
+        return {
+            name: np.tile(np.asarray(row, np.float32), (count, 1)) for name, row in rows.items()
+        }
 
     def camera_from_world(self):
         """As Cycles has the camera's space: right, up and depth; a panorama's: depth, left and up."""

@@ -55,7 +55,9 @@ def test_attributes():
     for output in ("Color", "Vector", "Fac", "Alpha"):
         if output not in stage.new("Attribute").outputs:
             continue
-        compare(stage, lambda s, o=output: s.new("Attribute", attribute_name="Heat").outputs[o], output)
+        compare(
+            stage, lambda s, o=output: s.new("Attribute", attribute_name="Heat").outputs[o], output
+        )
 
 
 def test_mapping():
@@ -63,6 +65,7 @@ def test_mapping():
     for kind in ("POINT", "TEXTURE", "VECTOR", "NORMAL"):
         for linked in (False, True):
             for scale in ((0.7, 1.5, -2.0), (1.0, 0.0, 2.0)):
+
                 def build(s, kind=kind, linked=linked, scale=scale):
                     node = s.new("Mapping", vector_type=kind)
                     given = [s.vector(), (0.2, -0.1, 0.3), (0.4, -0.9, 2.0), scale]
@@ -82,6 +85,7 @@ def test_vector_rotate():
     stage = Stage()
     for kind in ("AXIS_ANGLE", "X_AXIS", "Y_AXIS", "Z_AXIS", "EULER_XYZ"):
         for invert in (False, True):
+
             def build(s, kind=kind, invert=invert):
                 node = s.new("VectorRotate", rotation_type=kind, invert=invert)
                 given = {"Vector": s.vector(), "Center": s.vector((0.3, 0.2, 0.1), turn=1),
@@ -101,6 +105,7 @@ def test_vector_transform():
         for kind in ("VECTOR", "POINT", "NORMAL"):
             for source in ("WORLD", "OBJECT", "CAMERA"):
                 for target in ("WORLD", "OBJECT", "CAMERA"):
+
                     def build(s, kind=kind, source=source, target=target):
                         node = s.new("VectorTransform", vector_type=kind)
                         node.convert_from, node.convert_to = source, target
@@ -113,6 +118,7 @@ def test_vector_transform():
 def test_normal():
     stage = Stage()
     for output in ("Normal", "Dot"):
+
         def build(s, output=output):
             node = s.new("Normal")
             node.outputs["Normal"].default_value = (0.6, 0.0, 0.8)

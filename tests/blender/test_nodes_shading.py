@@ -10,6 +10,7 @@ def test_fresnel_and_layer_weight():
     for surface in (None, bowl):
         stage = Stage(surface and surface())
         for linked in (False, True):
+
             def normal(s, linked=linked):
                 return s.vector((1, 2, 1), (0, 0, 0.3), 1) if linked else None
 
@@ -18,6 +19,7 @@ def test_fresnel_and_layer_weight():
 
             compare(stage, fresnel, f"Fresnel {linked}")
             for output in ("Fresnel", "Facing"):
+
                 def weight(s, output=output):
                     node = s.new("LayerWeight")
                     s.feed(node, s.number(0, 0.5, 0.5), normal(s))
@@ -36,6 +38,7 @@ def test_normal_map():
     for space in ("OBJECT", "WORLD", "BLENDER_OBJECT", "BLENDER_WORLD"):
         stage = Stage(bowl())
         for strength in (1.0, 0.4, 1.7, -1.0):
+
             def build(s, space=space, strength=strength):
                 node = s.new("NormalMap", space=space)
                 return s.feed(node, strength, s.vector((0.5,) * 3, (0.6, 0.5, 0.7)))
@@ -64,6 +67,7 @@ def test_normal_map_in_tangent_space():
         row = np.array([1.0, 0.0, 0.0, 1.0], np.float32)  # U runs along X, V along Y
         attributes["tangent:"] = np.tile(row, (len(inputs["normal"]), 1))
         for strength in (1.0, 0.3, 1.8):
+
             def build(s, strength=strength):
                 node = s.new("NormalMap")
                 return s.feed(node, strength, s.vector((0.3,) * 3, (0.6, 0.5, 0.8)))
@@ -102,6 +106,7 @@ def test_bump():
         stage = bump_stage(thing())
         for output in (*outputs, "Position"):
             for strength, distance, invert in ((1.0, 0.2, False), (0.4, 0.6, True)):
+
                 def build(s, output=output, strength=strength, distance=distance, invert=invert):
                     node = s.new("Bump", invert=invert)
                     kind = "NewGeometry" if output == "Position" else "TexCoord"

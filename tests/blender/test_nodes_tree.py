@@ -41,6 +41,7 @@ def test_groups():
     outer.links.new(math.outputs[0], nested.inputs[0])
     outer.links.new(nested.outputs[0], target)
     for k in range(2):
+
         def build(s, k=k):
             node = s.new("Group", node_tree=outer)
             s.link(s.number(0), node.inputs[0])

@@ -85,7 +85,9 @@ def vector_input(compiler: Compiler, node: Any) -> Value:
 def normal_input(compiler: Compiler, node: Any) -> Value:
     """The input Normal; the surface's own where nothing is linked."""
     socket = node.inputs["Normal"]
-    return compiler.value(socket) if compiler.is_linked(socket) else compiler.builder.input("normal")
+    if compiler.is_linked(socket):
+        return compiler.value(socket)
+    return compiler.builder.input("normal")
 
 
 def _matrix(matrix: Any) -> tuple[float, ...]:

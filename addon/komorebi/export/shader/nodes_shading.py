@@ -15,9 +15,7 @@ ONE: Value = (1.0,)
 
 
 def _cosine(compiler: Compiler, node: Any) -> Value:
-    return compiler.builder.dot(
-        compiler.builder.input("incoming"), normal_input(compiler, node)
-    )
+    return compiler.builder.dot(compiler.builder.input("incoming"), normal_input(compiler, node))
 
 
 def _across(b: Builder, ior: Value, *, inverted: bool) -> Value:
@@ -79,7 +77,8 @@ def normal_map(compiler: Compiler, node: Any) -> Outputs:
     b, space = compiler.builder, node.space
     strength, color = compiler.inputs(node, "Strength", "Color")
     own = b.input("normal")
-    x, y, z = ((c,) for c in b.each("multiply_add", color, (2.0,), (-1.0,)))
+    parts = b.each("multiply_add", color, (2.0,), (-1.0,))
+    x, y, z = parts[:1], parts[1:2], parts[2:]
     if compiler.is_world:
         return {node.outputs[0].identifier: own}
     if space == "TANGENT":
