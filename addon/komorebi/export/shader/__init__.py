@@ -1,6 +1,14 @@
 """Shader nodes → programs of the core (native/shader)."""
 
-from . import nodes_basic, nodes_surface  # noqa: F401  they register functions of nodes
+from . import (  # noqa: F401  they register functions of nodes
+    nodes_basic,
+    nodes_color,
+    nodes_coordinates,
+    nodes_curves,
+    nodes_math,
+    nodes_shading,
+    nodes_surface,
+)
 from .compiler import Compiler, Ray
 
 __all__ = ["Compiler", "Ray"]
