@@ -1,19 +1,11 @@
 #include "shader/fractal_noise.h"
 #include "shader/hash.h"
+#include "shader/op_numbers.h"
 #include "shader/op_table.h"
 #include "shader/program.h"
 
 namespace komorebi {
 namespace {
-
-std::uint32_t whole_number(float x, std::uint32_t most) {
-  return x > 0.0f ? static_cast<std::uint32_t>(smaller(x, static_cast<float>(most))) : 0u;
-}
-
-std::uint32_t dimensions_of(float x) {
-  const std::uint32_t n = whole_number(x, 4);
-  return n == 0 ? 1 : n;
-}
 
 /// Noise has no seed, so a second one is the first from elsewhere: 100 to 200 cells away.
 float seed_shift(std::uint32_t dimensions, std::uint32_t seed, std::uint32_t axis) {
@@ -26,12 +18,12 @@ float seed_shift(std::uint32_t dimensions, std::uint32_t seed, std::uint32_t axi
 // numbers: dimensions, FractalType, normalize, counts_first, NoiseRepeat, channel of the colour
 void noise(const OpCall& c) {
   FractalKind kind;
-  kind.dimensions = dimensions_of(c.numbers[0]);
-  kind.type = static_cast<FractalType>(whole_number(c.numbers[1], 4));
+  kind.dimensions = dimension_count(c.numbers[0]);
+  kind.type = static_cast<FractalType>(choice(c.numbers[1], 4));
   kind.normalize = c.numbers[2] != 0.0f;
   kind.counts_first = c.numbers[3] != 0.0f;
-  kind.repeat = static_cast<NoiseRepeat>(whole_number(c.numbers[4], 1));
-  const std::uint32_t channel = whole_number(c.numbers[5], 2);
+  kind.repeat = static_cast<NoiseRepeat>(choice(c.numbers[4], 1));
+  const std::uint32_t channel = choice(c.numbers[5], 2);
   float moved[4][Program::kLanes];
   FractalRows rows{
       {c.in[0], c.in[1], c.in[2], c.in[3]}, c.in[4], c.in[5], c.in[6], c.in[7], c.in[8]};
@@ -47,8 +39,8 @@ void noise(const OpCall& c) {
 // in: up to 4 coordinates, distortion; out: the coordinates, moved
 // numbers: dimensions, NoiseRepeat
 void noise_distort(const OpCall& c) {
-  const std::uint32_t dimensions = dimensions_of(c.numbers[0]);
-  const auto repeat = static_cast<NoiseRepeat>(whole_number(c.numbers[1], 1));
+  const std::uint32_t dimensions = dimension_count(c.numbers[0]);
+  const auto repeat = static_cast<NoiseRepeat>(choice(c.numbers[1], 1));
   float moved[4][Program::kLanes];
   const float* const columns[4] = {moved[0], moved[1], moved[2], moved[3]};
   for (std::uint32_t axis = 0; axis < 4; ++axis) {
@@ -70,7 +62,7 @@ void noise_distort(const OpCall& c) {
 // numbers: dimensions
 void white_noise(const OpCall& c) {
   const float *x = c.in[0], *y = c.in[1], *z = c.in[2], *w = c.in[3];
-  const std::uint32_t dimensions = dimensions_of(c.numbers[0]);
+  const std::uint32_t dimensions = dimension_count(c.numbers[0]);
   for (std::uint32_t i = 0; i < c.count; ++i) {
     switch (dimensions) {
       case 1:

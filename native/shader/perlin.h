@@ -86,4 +86,14 @@ KOMOREBI_LANE float perlin(const float (&p)[N]) {
   return kScale[N - 1] * detail::perlin_blend<N, N, 0>(cell);
 }
 
+/// The same for `count` points, given as N columns of coordinates.
+template <std::size_t N>
+KOMOREBI_LANE void perlin_loop(const float* const* p, std::uint32_t count, float* __restrict out) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    float at[N];
+    for (std::size_t d = 0; d < N; ++d) at[d] = p[d][i];
+    out[i] = perlin<N>(at);
+  }
+}
+
 }  // namespace komorebi

@@ -1,37 +1,64 @@
+// Highway includes this file again for each instruction set, with other compiler options.
 #include "shader/perlin_rows.h"
 
+#include "bvh/simd_targets.h"
+#include "core/functions.h"
+#include "shader/lane_kernels.h"
 #include "shader/perlin.h"
 #include "shader/program.h"
 
+#ifndef KOMOREBI_SHADER_PERLIN_KERNEL
+#define KOMOREBI_SHADER_PERLIN_KERNEL
+namespace komorebi {
+
+/// perlin_loop of 1 to 4 dimensions.
+struct PerlinKernel {
+  void (*of[4])(const float* const* p, std::uint32_t count, float* out);
+};
+
+}  // namespace komorebi
+#endif
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "shader/perlin_rows.cpp"
+// The order of these matters.
+// clang-format off
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+namespace komorebi {
+namespace HWY_NAMESPACE {
+namespace {
+
+template <std::size_t N>
+void rows(const float* const* p, std::uint32_t count, float* out) {
+  perlin_loop<N>(p, count, out);
+}
+
+}  // namespace
+
+extern const PerlinKernel kPerlinKernel;
+constexpr PerlinKernel kPerlinKernel = {{&rows<1>, &rows<2>, &rows<3>, &rows<4>}};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace komorebi
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace komorebi {
 namespace {
 
-constexpr float kPeriod = 100000.0f;
+constexpr const PerlinKernel* kKernels[] = {KOMOREBI_KERNELS(kPerlinKernel)};
 
 template <std::size_t N>
-void rows(const float* const* p, std::uint32_t count, float* __restrict out) {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    float at[N];
-    for (std::size_t d = 0; d < N; ++d) at[d] = p[d][i];
-    out[i] = perlin<N>(at);
-  }
+void plain_rows(const float* const* p, std::uint32_t count, float* out) {
+  perlin_loop<N>(p, count, out);
 }
+constexpr PerlinKernel kPlain = {{&plain_rows<1>, &plain_rows<2>, &plain_rows<3>, &plain_rows<4>}};
 
-// The rest of a division by the period, of the sign of x. Both are whole multiples of the same
-// power of two, so that doubles hold all of it.
-float repeated(float x) {
-  constexpr float kMostExact = 9.0e15f;  // about 2^53; beyond it nothing is left to tell apart
-  const float size = absolute(x);
-  if (!(size >= kPeriod)) return x;
-  if (!(size < kMostExact)) return 0.5f;
-  constexpr double kWide = kPeriod;
-  const auto times = static_cast<double>(static_cast<std::int64_t>(size / kWide));
-  double rest = static_cast<double>(size) - times * kWide;
-  if (rest < 0.0) rest += kWide;
-  if (rest >= kWide) rest -= kWide;
-  const auto signed_rest = static_cast<float>(x < 0.0f ? -rest : rest);
-  return size >= 1000000.0f ? signed_rest + 0.5f : signed_rest;
-}
+constexpr float kPeriod = 100000.0f;
 
 bool any_beyond_period(const float* p, std::uint32_t count) {
   std::uint32_t beyond = 0;
@@ -48,19 +75,13 @@ void perlin_rows(std::uint32_t dimensions, const float* const* p, std::uint32_t 
   for (std::uint32_t d = 0; d < dimensions; ++d) {
     at[d] = p[d];
     if (repeat == NoiseRepeat::kNever || !any_beyond_period(p[d], count)) continue;
-    for (std::uint32_t i = 0; i < count; ++i) inside[d][i] = repeated(p[d][i]);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      inside[d][i] = fn::fmod(p[d][i], kPeriod) + (absolute(p[d][i]) < 1000000.0f ? 0.0f : 0.5f);
+    }
     at[d] = inside[d];
   }
-  switch (dimensions) {
-    case 1:
-      return rows<1>(at, count, out);
-    case 2:
-      return rows<2>(at, count, out);
-    case 3:
-      return rows<3>(at, count, out);
-    default:
-      return rows<4>(at, count, out);
-  }
+  lane_kernel(kKernels, kPlain).of[dimensions - 1](at, count, out);
 }
 
 }  // namespace komorebi
+#endif
