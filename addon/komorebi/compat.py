@@ -26,6 +26,12 @@ def cycles_or(block: Any, otherwise: Any) -> Any:
     return otherwise if settings is None else settings
 
 
+def world_visibility(world: Any) -> tuple[bool, bool]:
+    """Whether camera and diffuse rays see a world: Cycles' settings."""
+    settings = getattr(world, "cycles_visibility", None)
+    return (True, True) if settings is None else (settings.camera, settings.diffuse)
+
+
 def shadow_terminator(obj: Any) -> tuple[float, float]:
     """An object's shadow terminator offsets, of geometry and shading; the defaults without Cycles,
     to which they belonged up to 4.1."""

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any
 
 import numpy as np
 
-from . import cache, dump
+from . import cache, dump, native_world
 from .cryptomatte import name_id
-from .mesh_cache import KnownMesh, digest
+from .mesh_cache import KnownMesh
 from .scene_data import (
     AnyMesh,
     CameraData,
     CurveData,
-    EnvironmentImage,
     KnownShape,
     MeshData,
     MeshKey,
@@ -31,6 +28,8 @@ class Parts:
 
     meshes: list[Any] = field(default_factory=list)  # core.Mesh, as SceneData.meshes
     environment: Any | None = None  # core.Environment
+    world_color: tuple[float, ...] = (0.0, 0.0, 0.0)  # where there is none
+    world_program: Any | None = None  # core.Program, what camera rays see
     builder: str = "LINEAR"  # of the trees that had to be built
 
 
@@ -40,8 +39,7 @@ def load(core: Any, data: SceneData, expected_rays: float, threads: int, cancel:
     Arrays of a mesh are dropped as soon as the core has its own. Raises what the core raises:
     ValueError and RuntimeError with a sentence, core.Cancelled.
     """
-    image = data.world.image
-    image_key = None if image is None else _image_key(core, image, threads)
+    image_key = native_world.key(core, data.world, threads)
     cache.make_room({*(_key(mesh).geometry for mesh in data.meshes), image_key})
     primitives = sum(mesh.primitive_count for mesh in data.meshes)
     builder = core.choose_builder(primitives, expected_rays)
@@ -49,8 +47,8 @@ def load(core: Any, data: SceneData, expected_rays: float, threads: int, cancel:
     for index, mesh in enumerate(data.meshes):
         parts.meshes.append(_mesh(core, mesh, builder, threads, cancel))
         data.meshes[index] = None  # type: ignore[call-overload]
-    if image is not None and image_key is not None:
-        parts.environment = cache.get(image_key, partial(_native_environment, core, image))
+    world = native_world.load(core, data.world, image_key, threads, cancel)
+    parts.environment, parts.world_color, parts.world_program = world
     return parts
 
 
@@ -69,12 +67,14 @@ def build(
     scene.set_tables(**tables(data))
     world = data.world
     if parts.environment is None:
-        scene.set_world_color(world.color)
+        scene.set_world_color(parts.world_color)
     else:
         scene.set_world_environment(
             parts.environment,
             strength=world.strength, texture_from_world=world.texture_from_world,
         )  # fmt: skip
+    if parts.world_program is not None:
+        scene.set_world_program(parts.world_program)
     try:
         scene.set_camera(
             camera.kind, camera.matrix, camera.clip_start, camera.clip_end,
@@ -166,20 +166,3 @@ def _native_mesh(
         step_positions=mesh.step_positions,
         builder=builder, threads=threads, cancel=cancel, same_geometry=same_geometry,
     )  # fmt: skip
-
-
-def _native_environment(core: Any, image: EnvironmentImage) -> Any:
-    if image.pixels is not None:
-        return core.Environment.from_pixels(image.name, image.pixels)
-    return core.Environment.from_file(image.path, color_space=image.color_space)
-
-
-def _image_key(core: Any, image: EnvironmentImage, threads: int) -> bytes:
-    if image.pixels is not None:
-        return b"pixels" + digest(core, (image.pixels,), threads)
-    # A file is known by path, size and time of change; reading it all would cost as much as
-    # loading it.
-    assert image.path is not None
-    status = os.stat(image.path)
-    stamp = (image.path, image.color_space, status.st_size, status.st_mtime_ns, status.st_ino)
-    return b"file" + repr(stamp).encode("utf-8", "surrogateescape")

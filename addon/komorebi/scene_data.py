@@ -172,6 +172,41 @@ class CameraData:
     motion: dict[str, Any] | None = None
 
 
+# What a node of a shader tree works on: a number, or (index of an operation, which of its outputs).
+Operand = float | tuple[int, int]
+Value = tuple[Operand, ...]  # one operand for a number, three for a colour or vector
+
+
+@dataclass(slots=True)
+class Op:
+    """An operation of core.Program."""
+
+    op: str
+    operands: Value = ()
+    numbers: tuple[float, ...] = ()
+    table: FloatArray | None = None
+    name: str = ""
+    texture: Any = None  # TextureImage
+
+
+@dataclass(slots=True)
+class ProgramData:
+    """What core.Program is made of."""
+
+    name: str
+    ops: list[Op] = field(default_factory=list)
+    outputs: Value = ()
+
+    def key(self) -> bytes:
+        """The same for programs that do the same."""
+        said = [
+            (o.op, o.operands, o.numbers, b"" if o.table is None else o.table.tobytes(), o.name,
+             None if o.texture is None else o.texture.key)
+            for o in self.ops
+        ]  # fmt: skip
+        return repr((said, self.outputs)).encode()
+
+
 @dataclass(slots=True)
 class EnvironmentImage:
     """An equirectangular picture: either a file for the core to read, or pixels."""
@@ -184,12 +219,17 @@ class EnvironmentImage:
 
 @dataclass(slots=True)
 class WorldData:
-    """Either one colour (radiance, its strength included) or a map times `strength`."""
+    """What lights the scene: one colour (radiance, its strength included), a map times `strength`,
+    or a program that a map is made from."""
 
     color: tuple[float, float, float] = (0.0, 0.0, 0.0)
     image: EnvironmentImage | None = None
     strength: float = 1.0
     texture_from_world: DoubleArray = field(default_factory=lambda: np.eye(3))  # [3, 3]
+    program: ProgramData | None = None  # three outputs, radiance
+    program_size: int = 0  # columns of pixels that its images have; 0: it has none
+    resolution: int = 0  # columns of pixels of the map that is made from the program; 0: automatic
+    camera_program: ProgramData | None = None  # what camera rays see; None: the same
 
 
 @dataclass(slots=True)

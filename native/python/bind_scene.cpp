@@ -333,12 +333,13 @@ void bind_scene(py::module_& module) {
            "texture_from_world: rotation, float64 [3, 3].")
       .def(
           "set_world_program",
-          [](Scene& scene, std::shared_ptr<Program> program) {
-            scene.set_world_program(std::move(program));
+          [](Scene& scene, std::shared_ptr<Program> program, float max_radiance) {
+            scene.set_world_program(std::move(program), max_radiance);
           },
-          py::arg("program"),
+          py::arg("program"), py::arg("max_radiance") = 0.0f,
           "What camera rays see behind the scene, in place of the colour or map that lights it: a "
-          "program with three outputs, radiance.")
+          "program with three outputs, radiance. max_radiance: a bound of what is too small to be "
+          "found, such as a sun's disc.")
       .def("set_camera", &set_camera, py::arg("kind"), py::arg("matrix"), py::arg("clip_start"),
            py::arg("clip_end"), py::arg("width"), py::arg("height"), py::kw_only(),
            py::arg("lens") = py::none(), py::arg("panorama") = py::none(),

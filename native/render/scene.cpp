@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "render/world_program.h"
+
 namespace komorebi {
 namespace {
 
@@ -149,11 +151,12 @@ void Scene::set_world_environment(std::shared_ptr<const Environment> environment
   texture_from_world_ = texture_from_world;
 }
 
-void Scene::set_world_program(std::shared_ptr<const Program> program) {
+void Scene::set_world_program(std::shared_ptr<const Program> program, float max_radiance) {
   require_open();
   if (program && program->output_count() != 3) {
     throw std::invalid_argument(program->name() + ": a world has three outputs, its radiance");
   }
+  world_program_max_ = program ? std::max(max_radiance, brightest(*program)) : 0.0f;
   world_program_ = std::move(program);
 }
 
@@ -201,8 +204,9 @@ StepsView Scene::steps() const {
 }
 
 float Scene::max_radiance() const {
-  if (environment_) return static_cast<float>(strength_) * environment_->max_radiance();
-  return max_abs(world_color_);
+  const float light = environment_ ? static_cast<float>(strength_) * environment_->max_radiance()
+                                   : max_abs(world_color_);
+  return std::max(light, world_program_max_);
 }
 
 void Scene::place(const InstanceInput& input, std::span<const Mat4d> poses, ThreadPool& pool,

@@ -53,7 +53,8 @@ class Scene {
                              const Mat3d& texture_from_world);
   /// What is seen behind the scene, of which the two above are what lights it: three outputs,
   /// radiance. std::invalid_argument if there are not three.
-  void set_world_program(std::shared_ptr<const Program> program);
+  /// @param max_radiance  a bound of what is too small to be found (a sun's disc)
+  void set_world_program(std::shared_ptr<const Program> program, float max_radiance = 0.0f);
   void set_camera(const CameraDesc& camera);
   /// Throws std::invalid_argument when lists of slots name what is not there.
   void set_tables(SceneTables tables);
@@ -128,6 +129,7 @@ class Scene {
   std::shared_ptr<const Environment> environment_;
   double strength_ = 1.0;
   std::shared_ptr<const Program> world_program_;
+  float world_program_max_ = 0.0f;
   Mat3d texture_from_world_{1.0};
   CameraDesc camera_desc_;
   SceneTables tables_;

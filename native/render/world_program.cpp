@@ -63,6 +63,12 @@ Vec3 world_radiance(const RenderContext& context, const Vec3& direction) {
   return radiance;
 }
 
+float brightest(const Program& program) {
+  ThreadPool alone(1);
+  const std::vector<float> texels = world_texels(program, 128, 64, alone, Cancel());
+  return *std::max_element(texels.begin(), texels.end());
+}
+
 std::vector<float> world_texels(const Program& program, std::uint32_t width, std::uint32_t height,
                                 ThreadPool& pool, const Cancel& cancel) {
   if (width == 0 || height == 0 || width > 1u << 16 || height > 1u << 16) {

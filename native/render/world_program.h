@@ -19,6 +19,9 @@ Vec3 world_radiance(const RenderContext& context, const Vec3& direction);
 void run_world(const Program& program, Program::Scratch& scratch, const Vec3* directions,
                std::uint32_t count, Vec3* radiance);
 
+/// The largest channel of what a world's program says in some thousand directions.
+float brightest(const Program& program);
+
 /// What a world's program says in the directions of an equirectangular map's texel centres: the
 /// map's texels [height][width][3], row 0 at the bottom. The same for any number of threads.
 /// @throws Cancelled

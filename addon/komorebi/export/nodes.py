@@ -29,7 +29,7 @@ def source(socket: Any) -> Any | None:
 
 def world_output(tree: Any) -> Any | None:
     """The World Output node that counts, or None."""
-    for target in ("ALL", "CYCLES", "EEVEE"):
+    for target in ("CYCLES", "ALL", "EEVEE"):
         node = tree.get_output_node(target)
         if node is not None and node.type == "OUTPUT_WORLD":
             return node

@@ -10,6 +10,7 @@ from ._komorebi import (
     Cancelled,
     Environment,
     Mesh,
+    Program,
     Scene,
     Session,
     Settings,
@@ -19,6 +20,7 @@ from ._komorebi import (
     content_tags,
     film_bytes_per_pixel,
     force_instruction_set,
+    has_op,
     known_passes,
 )
 
@@ -28,6 +30,7 @@ __all__ = [
     "Cancelled",
     "Environment",
     "Mesh",
+    "Program",
     "Scene",
     "Session",
     "Settings",
@@ -37,5 +40,6 @@ __all__ = [
     "content_tags",
     "film_bytes_per_pixel",
     "force_instruction_set",
+    "has_op",
     "known_passes",
 ]

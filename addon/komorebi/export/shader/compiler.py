@@ -53,6 +53,7 @@ class Compiler:
         self.ray = ray
         self.is_world = is_world
         self.owner = owner  # how warnings begin: world "World"
+        self.map_size = 0  # columns of the largest environment map
         self._engine = engine
         self._groups: tuple[Any, ...] = ()  # group nodes that we are inside of, the outermost first
         self._done: dict[tuple[Any, ...], Outputs] = {}
@@ -173,7 +174,7 @@ class Compiler:
         return outputs
 
     def _unknown(self, node: Any) -> Outputs:
-        """A node that nobody knows passes on the mean of its colours, or a shader of its inputs."""
+        """A node that nobody knows passes on its first input of the same type, or all its shaders."""
         outputs: Outputs = {}
         for socket in node.outputs:
             if socket.type == "SHADER":
@@ -189,14 +190,20 @@ class Compiler:
                 (s for s in node.inputs if s.type == socket.type and self.is_linked(s)),
                 next((s for s in node.inputs if s.type == socket.type), None),
             )
-            what = "as 0" if same is None else f"as its input {same.name}"
+            what = "as an even value" if same is None else f"as its input {same.name}"
             self.warn(node, f"not supported yet, rendered {what}")
-            outputs[socket.identifier] = self._zero(socket) if same is None else self.value(same)
+            outputs[socket.identifier] = (
+                self._stand_in(socket) if same is None else self.value(same)
+            )
         return outputs
 
     @staticmethod
     def _zero(socket: Any) -> Value:
         return (0.0, 0.0, 0.0) if socket.type in VECTORS else (0.0,)
+
+    @classmethod
+    def _stand_in(cls, socket: Any) -> Value:
+        return GREY if socket.type == "RGBA" else cls._zero(socket)
 
     @staticmethod
     def _default(socket: Any) -> Value:

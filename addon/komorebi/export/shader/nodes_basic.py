@@ -27,7 +27,10 @@ def emission(compiler: Compiler, node: Any) -> Outputs:
 @node("MIX_SHADER")
 def mix_shader(compiler: Compiler, node: Any) -> Outputs:
     b = compiler.builder
-    factor = b.clamp01(compiler.value(node.inputs[0]))
+    factor = compiler.value(node.inputs[0])
+    if factor[0] in (0.0, 1.0):  # for this kind of ray there is but one
+        return {node.outputs[0].identifier: compiler.closures(node.inputs[1 + int(factor[0])])}
+    factor = b.clamp01(factor)
     first, second = (compiler.closures(node.inputs[i]) for i in (1, 2))
     mixed = scaled(b, first, b.subtract((1.0,), factor)) + scaled(b, second, factor)
     return {node.outputs[0].identifier: mixed}

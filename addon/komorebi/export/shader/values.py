@@ -9,43 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from ...scene_data import FloatArray
-
-Operand = float | tuple[int, int]
-Value = tuple[Operand, ...]
+from ...scene_data import FloatArray, Op, Value
 
 # Rec. 709, as Cycles makes a number of a colour; of a vector it takes the mean.
 LUMINANCE = (0.2126729, 0.7151522, 0.0721750)
-
-
-@dataclass(slots=True)
-class Op:
-    """An operation of core.Program."""
-
-    op: str
-    operands: Value = ()
-    numbers: tuple[float, ...] = ()
-    table: FloatArray | None = None
-    name: str = ""
-    texture: Any = None  # scene_data.TextureImage
-
-
-@dataclass(slots=True)
-class ProgramData:
-    """What core.Program is made of."""
-
-    name: str
-    ops: list[Op] = field(default_factory=list)
-    outputs: Value = ()
-
-    def key(self) -> bytes:
-        """The same for programs that do the same."""
-        said = [
-            (o.op, o.operands, o.numbers, b"" if o.table is None else o.table.tobytes(), o.name,
-             None if o.texture is None else o.texture.key)
-            for o in self.ops
-        ]  # fmt: skip
-        return repr((said, self.outputs)).encode()
 
 
 @dataclass(slots=True)
