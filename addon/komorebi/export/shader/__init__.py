@@ -1,6 +1,12 @@
 """Shader nodes → programs of the core (native/shader)."""
 
-from . import nodes_basic, nodes_math  # noqa: F401  they register functions of nodes
+from . import (  # noqa: F401  they register functions of nodes
+    nodes_basic,
+    nodes_math,
+    nodes_noise,
+    nodes_patterns,
+    nodes_voronoi,
+)
 from .compiler import Compiler, Ray
 
 __all__ = ["Compiler", "Ray"]
