@@ -51,6 +51,9 @@ def test_vector_math():
 def test_vector_math_of_zeros():
     stage = Stage()
     for operation in operations("ShaderNodeVectorMath"):
+        if operation in {"REFLECT", "REFRACT"} and bpy.app.version < (4, 0, 0):
+            continue  # NaN there
+
         def build(s, operation=operation):
             node = s.new("VectorMath", operation=operation)
             first = next(i for i in node.inputs if i.enabled)

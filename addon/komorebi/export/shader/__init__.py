@@ -2,9 +2,13 @@
 
 from . import (  # noqa: F401  they register functions of nodes
     nodes_basic,
+    nodes_color,
+    nodes_coordinates,
+    nodes_curves,
     nodes_math,
     nodes_noise,
     nodes_patterns,
+    nodes_shading,
     nodes_voronoi,
 )
 from .compiler import Compiler, Ray

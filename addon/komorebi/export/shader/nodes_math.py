@@ -112,7 +112,7 @@ def map_range(compiler: Compiler, node: Any) -> Outputs:
     if not is_vector:  # one number: a range that is empty gives 0
         same = b.each("compare", from_low, from_high, (0.0,))
         result = b.multiply(result, b.subtract((1.0,), same))
-    if node.clamp and kind in {"LINEAR", "STEPPED"}:
+    if node.clamp and not (is_vector and kind.startswith("SMOOTH")):
         low, high = b.each("minimum", to_low, to_high), b.each("maximum", to_low, to_high)
         result = b.each("clamp", result, low, high)
     return {node.outputs["Vector" if is_vector else "Result"].identifier: result}

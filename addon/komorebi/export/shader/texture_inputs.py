@@ -10,7 +10,7 @@ from .values import Value
 
 # Where a texture's own mapping, which no panel shows, leaves coordinates as they are.
 _NO_MAPPING = {
-    "vector_type": "POINT", "translation": (0.0, 0.0, 0.0), "rotation": (0.0, 0.0, 0.0),
+    "translation": (0.0, 0.0, 0.0), "rotation": (0.0, 0.0, 0.0),
     "scale": (1.0, 1.0, 1.0), "mapping_x": "X", "mapping_y": "Y", "mapping_z": "Z",
     "use_min": False, "use_max": False,
 }  # fmt: skip
@@ -18,12 +18,11 @@ _NO_MAPPING = {
 
 def texture_vector(compiler: Compiler, node: Any) -> Value:
     """The coordinates that a texture is looked up at."""
-    mapping = node.texture_mapping
+    mapping = getattr(node, "texture_mapping", None)
     for name, usual in _NO_MAPPING.items():
-        value = getattr(mapping, name)
+        value = getattr(mapping, name, usual)  # White Noise has no mapping
         value = tuple(value) if isinstance(usual, tuple) else value
-        # Types differ in what they do with a scale or translation alone.
-        if name != "vector_type" and value != usual:
+        if value != usual:
             compiler.warn(node, "texture_mapping is not supported yet, left out")
             break
     socket = node.inputs["Vector"]
