@@ -31,16 +31,19 @@ def voronoi(compiler: Compiler, node: Any) -> Outputs:
         operands = place + detail + roughness + lacunarity + randomness
         return {"Distance": b.op("voronoi_edge", operands, numbers=(count, normalize, hashed))}
     color = next(s for s in node.outputs if s.identifier == "Color")
+    is_fractal = hasattr(node, "normalize")
+    smoothness = parameter(compiler, node, "Smoothness")
+    if not is_fractal:  # where it is 0, later releases search fewer cells
+        smoothness = b.each("maximum", smoothness, (1e-30,))
     operands = (
         place + parameter(compiler, node, "Scale") + detail + roughness + lacunarity
-        + parameter(compiler, node, "Smoothness") + parameter(compiler, node, "Exponent")
-        + randomness
+        + smoothness + parameter(compiler, node, "Exponent") + randomness
     )  # fmt: skip
     found = b.op(
         "voronoi", operands, 8,
         numbers=(
             count, float(_FEATURES.index(feature)), float(_METRICS.index(node.distance)),
-            normalize, hashed, _FLOAT_MAX if hasattr(node, "normalize") else 8.0,
+            normalize, hashed, _FLOAT_MAX if is_fractal else 8.0,
             float(color.is_linked),
         ),
     )  # fmt: skip
