@@ -6,8 +6,11 @@ from . import (  # noqa: F401  they register functions of nodes
     nodes_coordinates,
     nodes_curves,
     nodes_math,
+    nodes_noise,
+    nodes_patterns,
     nodes_shading,
     nodes_surface,
+    nodes_voronoi,
 )
 from .compiler import Compiler, Ray
 
