@@ -22,6 +22,9 @@ from ._komorebi import (
     force_instruction_set,
     has_op,
     known_passes,
+    sky_numbers,
+    sky_sun,
+    sky_table,
 )
 
 __all__ = [
@@ -42,4 +45,7 @@ __all__ = [
     "force_instruction_set",
     "has_op",
     "known_passes",
+    "sky_numbers",
+    "sky_sun",
+    "sky_table",
 ]
