@@ -54,6 +54,7 @@ class Compiler:
         self.is_world = is_world
         self.owner = owner  # how warnings begin: world "World"
         self.map_size = 0  # columns of the largest environment map
+        self.suns: list[Any] = []  # nodes_sky.SkySun: discs that a map of the world leaves out
         self._engine = engine
         self._groups: tuple[Any, ...] = ()  # group nodes that we are inside of, the outermost first
         self._done: dict[tuple[Any, ...], Outputs] = {}
