@@ -65,8 +65,9 @@ class Atmosphere {
     const double fall =
         h > 0.0 ? exp_double(-0.07771971 * exp_double(1.16364243 * log_double(h))) : 1.0;
     const double from_middle = log_h - 3.22261;
-    const double ozone = 3.78547397e20 * kDobson * sky_.ozone *
-                         exp_double(-from_middle * from_middle * 5.55555555 - log_h);
+    const double fall_of_ozone = -from_middle * from_middle * 5.55555555 - log_h;
+    const double ozone =
+        3.78547397e20 * kDobson * sky_.ozone * exp_double(std::max(fall_of_ozone, -700.0));
     const double dust = (1.3681e20 * exp_double(-h / 0.73) + 2e6) * sky_.aerosol;
     Air air;
     for (std::size_t i = 0; i < 4; ++i) {
