@@ -8,7 +8,7 @@ namespace komorebi {
 const OpInfo* find_op(std::string_view name) {
   static const auto kTable = [] {
     std::unordered_map<std::string_view, const OpInfo*> table;
-    for (const auto& family : {arithmetic_ops(), sky_ops()}) {
+    for (const auto& family : {arithmetic_ops(), math_ops(), vector_ops(), sky_ops()}) {
       for (const OpInfo& op : family) table.emplace(op.name, &op);
     }
     return table;

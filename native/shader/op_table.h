@@ -12,6 +12,8 @@ const OpInfo* find_op(std::string_view name);
 
 // The families of operations, each in a file of its own (ops_*.cpp).
 std::span<const OpInfo> arithmetic_ops();
+std::span<const OpInfo> math_ops();
+std::span<const OpInfo> vector_ops();
 std::span<const OpInfo> sky_ops();
 
 }  // namespace komorebi
