@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "parallel/thread_pool.h"
+#include "shader/sky_lanes.h"
 #include "shader/sky_radiance.h"
 
 /// Light scattered any number of times, by Fernando García Liñán's fit for four wavelengths
@@ -16,14 +17,18 @@ using Spectrum = std::array<float, 4>;  // at 630, 560, 490 and 430 nm
 
 constexpr double kEarth = 6371.0, kAirHeight = 100.0, kAtmosphere = kEarth + kAirHeight;
 constexpr int kSteps = 64, kLutColumns = 256, kLutRows = 64;
+constexpr auto kRadius = static_cast<float>(kEarth);
 constexpr float kGroundAlbedo = 0.3f;
 constexpr float kDustG = 0.8f;  // of Henyey and Greenstein's phase function
 constexpr Spectrum kSunIrradiance = {1.679f, 1.828f, 1.986f, 1.307f};
-constexpr Spectrum kMolecules = {6.605e-3f, 1.067e-2f, 1.842e-2f, 3.156e-2f};  // scattering, 1 / km
-constexpr std::array<double, 4> kOzone = {3.472e-25, 3.914e-25, 1.349e-25, 11.03e-27};
-constexpr double kDobson = 334.5;  // mean of a year
-constexpr std::array<double, 4> kDustAbsorption = {2.8722e-24, 4.6168e-24, 7.9706e-24, 1.3578e-23};
-constexpr std::array<double, 4> kDustScattering = {1.5908e-22, 1.7711e-22, 2.0942e-22, 2.4033e-22};
+// Scattering (and of dust absorption) of a kilometre of the air at the sea, dust's by cross
+// section; ozone's absorption by cross section times the mean thickness of its layer.
+constexpr Spectrum kMolecules = {6.605e-3f, 1.067e-2f, 1.842e-2f, 3.156e-2f};
+constexpr Spectrum kDustScattering = {1.5908e-22f, 1.7711e-22f, 2.0942e-22f, 2.4033e-22f};
+constexpr Spectrum kDustAbsorption = {2.8722e-24f, 4.6168e-24f, 7.9706e-24f, 1.3578e-23f};
+constexpr float kDobson = 334.5f;
+constexpr Spectrum kOzone = {kDobson * 3.472e-25f, kDobson * 3.914e-25f, kDobson * 1.349e-25f,
+                             kDobson * 1.103e-26f};
 constexpr Spectrum kLaterLight = {0.02f * 0.217f, 0.02f * 0.347f, 0.02f * 0.594f, 0.02f};
 constexpr double kToXyz[4][3] = {{53.386917738564668, 22.981337506691025, 0.0},
                                  {43.904844466369358, 71.347795700053394, 0.10250686796574131},
@@ -50,49 +55,60 @@ double air_ahead(double r, double up) {
   return std::sqrt(std::max(along * along + kAtmosphere * kAtmosphere - r * r, 0.0)) - along;
 }
 
-/// What a kilometre of air scatters and takes away.
-struct Air {
-  Spectrum molecules, dust, extinction;
+/// Of molecules, dust and ozone: how dense they are, or this integrated along a ray.
+struct Amounts {
+  float molecules, dust, ozone;
 };
+
+inline Amounts densities(float height) {
+  const float h = above_zero(height - 1e-4f) + 1e-4f;
+  const float log_h = log_lane(h), from_middle = log_h - 3.22261f;
+  return {exp_lane(-0.07771971f * exp_lane(1.16364243f * log_h)),
+          1.3681e20f * exp_lane(h * (-1.0f / 0.73f)) + 2e6f,
+          3.78547397e20f * exp_lane(-from_middle * from_middle * 5.55555555f - log_h)};
+}
 
 class Atmosphere {
  public:
   explicit Atmosphere(const SkyDesc& sky) : sky_(sky) {}
 
-  Air at(double height) const {
-    const double h = std::max(height, 0.0);
-    const double log_h = log_double(std::max(h, 1e-4));
-    const double fall =
-        h > 0.0 ? exp_double(-0.07771971 * exp_double(1.16364243 * log_double(h))) : 1.0;
-    const double from_middle = log_h - 3.22261;
-    const double fall_of_ozone = -from_middle * from_middle * 5.55555555 - log_h;
-    const double ozone =
-        3.78547397e20 * kDobson * sky_.ozone * exp_double(std::max(fall_of_ozone, -700.0));
-    const double dust = (1.3681e20 * exp_double(-h / 0.73) + 2e6) * sky_.aerosol;
-    Air air;
-    for (std::size_t i = 0; i < 4; ++i) {
-      air.molecules[i] = kMolecules[i] * static_cast<float>(fall * sky_.air);
-      air.dust[i] = static_cast<float>(kDustScattering[i] * dust);
-      air.extinction[i] = air.molecules[i] + air.dust[i] +
-                          static_cast<float>(kDustAbsorption[i] * dust + kOzone[i] * ozone);
-    }
-    return air;
+  Amounts at(float height) const { return scaled(densities(height)); }
+
+  static float extinction(const Amounts& a, std::size_t k) {
+    return kMolecules[k] * a.molecules + (kDustScattering[k] + kDustAbsorption[k]) * a.dust +
+           kOzone[k] * a.ozone;
   }
 
   /// How much light comes to a height from the end of the air. The earth does not stand in the way:
   /// below its surface the air is as on it.
   Spectrum transmittance(double up, double height) const {
-    const double r = kEarth + height, step = air_ahead(r, up) / kSteps;
-    Spectrum depth = {};
+    const double r = kEarth + height;
+    const auto excess = static_cast<float>(height * (2.0 * kEarth + height));
+    const auto twice = static_cast<float>(2.0 * r * up);
+    const float step = static_cast<float>(air_ahead(r, up)) / kSteps;
+    float molecules[kSteps], dust[kSteps], ozone[kSteps];
     for (int i = 0; i < kSteps; ++i) {
-      const double t = (i + 0.5) * step;
-      const Air air = at(std::sqrt(r * r + t * (2.0 * r * up + t)) - kEarth);
-      for (std::size_t k = 0; k < 4; ++k) depth[k] += air.extinction[k] * static_cast<float>(step);
+      const float t = (static_cast<float>(i) + 0.5f) * step;
+      const Amounts there = densities(height_over(kRadius, excess + t * (twice + t)));
+      molecules[i] = there.molecules;
+      dust[i] = there.dust;
+      ozone[i] = there.ozone;
     }
-    return each([&](std::size_t k) { return fn::exp(-depth[k]); });
+    Amounts sum = {};
+    for (int i = 0; i < kSteps; ++i) {
+      sum.molecules += molecules[i];
+      sum.dust += dust[i];
+      sum.ozone += ozone[i];
+    }
+    sum = scaled(sum);
+    return each([&](std::size_t k) { return exp_lane(-extinction(sum, k) * step); });
   }
 
  private:
+  Amounts scaled(const Amounts& a) const {
+    return {a.molecules * sky_.air, a.dust * sky_.aerosol, a.ozone * sky_.ozone};
+  }
+
   const SkyDesc& sky_;
 };
 
@@ -110,6 +126,13 @@ class Transmittances {
         }
       }
     });
+  }
+
+  Spectrum on_ground(float up) const {
+    const float x = (kLutColumns - 1) * std::clamp(0.5f * up + 0.5f, 0.0f, 1.0f);
+    const auto i = static_cast<std::size_t>(x);
+    const Spectrum &a = table_[i], &b = table_[std::min<std::size_t>(i + 1, kLutColumns - 1)];
+    return each([&](std::size_t k) { return a[k] + (x - static_cast<float>(i)) * (b[k] - a[k]); });
   }
 
   /// @param height  0 on the ground, 1 at the end of the air
@@ -138,9 +161,9 @@ struct Step {
   double t, r;
   float height;  ///< 0 to 1
   float ground;  ///< the part of the sphere around that the earth takes, times its albedo / 4π²
-  Air air;
-  Spectrum from_ground;  ///< transmittance from the ground up to here
-  Spectrum reach;        ///< how much of what is scattered here arrives, times the step
+  Spectrum molecules, dust;  ///< scattering of a kilometre
+  Spectrum from_ground;      ///< transmittance from the ground up to here
+  Spectrum reach;            ///< how much of what is scattered here arrives, times the step
 };
 
 class Marcher {
@@ -178,15 +201,17 @@ class Marcher {
       step.r = std::sqrt(eye_ * eye_ + step.t * (2.0 * along + step.t));
       const double height = std::max(step.r - kEarth, 0.0);
       step.height = static_cast<float>(height / kAirHeight);
-      step.air = atmosphere_.at(height);
+      const Amounts air = atmosphere_.at(static_cast<float>(height));
       const double sine = std::min(kEarth / step.r, 1.0);
       step.ground = static_cast<float>(0.5 * (1.0 - std::sqrt(1.0 - sine * sine)) *
                                        double{kGroundAlbedo} / kPi);
       const Spectrum above = transmittances_.at(1.0f, step.height);
       for (std::size_t k = 0; k < 4; ++k) {
         step.from_ground[k] = whole[k] / above[k];
-        const float extinction = step.air.extinction[k];
-        const float passed = fn::exp(-static_cast<float>(size) * extinction);
+        const float extinction = Atmosphere::extinction(air, k);
+        step.molecules[k] = kMolecules[k] * air.molecules;
+        step.dust[k] = kDustScattering[k] * air.dust;
+        const float passed = exp_lane(-static_cast<float>(size) * extinction);
         step.reach[k] = through[k] * (1.0f - passed) / std::max(extinction, 1e-7f);
         through[k] *= passed;
       }
@@ -202,13 +227,13 @@ class Marcher {
     for (const Step& step : steps_) {
       const auto up = static_cast<float>((eye_ * sun_up_ + step.t * cosine) / step.r);
       const Spectrum sun = transmittances_.at(up, step.height);
-      const Spectrum on_ground = transmittances_.at(up, 0.0f);
-      const float lit = 1.0f / (1.0f + 5.0f * fn::exp(-17.92f * up));
+      const Spectrum on_ground = transmittances_.on_ground(up);
+      const float lit = 1.0f / (1.0f + 5.0f * exp_lane(-17.92f * up));
       for (std::size_t k = 0; k < 4; ++k) {
         const float later =
             kLaterLight[k] * lit + step.ground * on_ground[k] * step.from_ground[k] * up;
-        const float scattered = step.air.molecules[k] * (molecules_phase * sun[k] + later) +
-                                step.air.dust[k] * (dust_phase * sun[k] + later);
+        const float scattered = step.molecules[k] * (molecules_phase * sun[k] + later) +
+                                step.dust[k] * (dust_phase * sun[k] + later);
         sum[k] += kSunIrradiance[k] * scattered * step.reach[k];
       }
     }

@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "parallel/thread_pool.h"
+#include "shader/sky_lanes.h"
 #include "shader/sky_radiance.h"
 
 /// Light that the air and its dust scatter once, for 21 wavelengths, marched along each direction:
@@ -12,7 +12,8 @@ namespace komorebi {
 namespace {
 
 constexpr double kEarth = 6360e3, kAtmosphere = 6420e3;  // radii
-constexpr float kRayleighHeight = 8000.0f;               // where density has fallen to 1 / e
+constexpr auto kRadius = static_cast<float>(kEarth);
+constexpr float kRayleighHeight = 8000.0f;  // where density has fallen to 1 / e
 constexpr float kDustScattering = 2e-5f, kDustExtinction = 1.11f * kDustScattering;
 constexpr float kDustG = 0.76f;  // of Cornette and Shanks' phase function
 constexpr int kSteps = 32;
@@ -57,19 +58,6 @@ constexpr float kNode[kNodes] = {0.006811185292f, 0.03614807107f, 0.09004346519f
 constexpr float kWeight[kNodes] = {0.01750893642f, 0.04135477391f, 0.06678839063f, 0.09507698807f,
                                    0.1283416365f,  0.1707430204f,  0.2327233347f,  0.3562490486f};
 
-/// e^x for x < 1, relative error ≤ 3e-7 · (1 + |x|); a compiler makes vectors of it.
-inline float exp_lane(float x) {
-  const float bits = std::max(x, -87.0f) * 1.442695041f;
-  const auto k = static_cast<std::int32_t>(bits + 128.5f) - 128;
-  const float r = bits - static_cast<float>(k);
-  const float value =
-      1.0f + r * (0.693147181f +
-                  r * (0.240226507f +
-                       r * (0.0555041087f +
-                            r * (0.00961812911f + r * (0.00133335581f + r * 0.000154035304f)))));
-  return value * std::bit_cast<float>((k + 127) << 23);
-}
-
 /// Of air, dust and ozone: densities, or these integrated along a ray.
 struct Amounts {
   float air = 0.0f, dust = 0.0f, ozone = 0.0f;
@@ -79,9 +67,8 @@ inline Amounts densities(float height) {
   // Dust falls off in 1200 m, so that both are powers of one exponential.
   const float e = exp_lane(height * (-1.0f / (3.0f * kRayleighHeight)));
   const float e2 = e * e, e4 = e2 * e2, e5 = e4 * e, e10 = e5 * e5;
-  const float from_middle = height - 25000.0f;
-  const float ozone = 1.0f - (from_middle < 0.0f ? -from_middle : from_middle) * (1.0f / 15000.0f);
-  return {e2 * e, e10 * e10, ozone > 0.0f ? ozone : 0.0f};
+  const float ozone = 1.0f - fn::abs(height - 25000.0f) * (1.0f / 15000.0f);
+  return {e2 * e, e10 * e10, above_zero(ozone)};
 }
 
 /// What lies between a point and the end of the air.
@@ -92,18 +79,19 @@ Amounts optical_depth(double excess, double along) {
   const double length = std::sqrt(std::max(along * along + kAir - excess, 0.0)) - along;
   const auto c = static_cast<float>(excess), twice = static_cast<float>(2.0 * along),
              end = static_cast<float>(length);
-  constexpr auto kRadius = static_cast<float>(kEarth);
-  Amounts at[kNodes];
+  float air[kNodes], dust[kNodes], ozone[kNodes];
   for (int i = 0; i < kNodes; ++i) {
     const float t = kNode[i] * end;
-    const float there = c + t * (twice + t);
-    at[i] = densities(there / (std::sqrt(kRadius * kRadius + there) + kRadius));
+    const Amounts there = densities(height_over(kRadius, c + t * (twice + t)));
+    air[i] = there.air * kWeight[i];
+    dust[i] = there.dust * kWeight[i];
+    ozone[i] = there.ozone * kWeight[i];
   }
   Amounts sum;
   for (int i = 0; i < kNodes; ++i) {
-    sum.air += kWeight[i] * at[i].air;
-    sum.dust += kWeight[i] * at[i].dust;
-    sum.ozone += kWeight[i] * at[i].ozone;
+    sum.air += air[i];
+    sum.dust += dust[i];
+    sum.ozone += ozone[i];
   }
   return {sum.air * end, sum.dust * end, sum.ozone * end};
 }
@@ -117,7 +105,7 @@ Vec3d to_xyz(const float* spectrum) {
 }
 
 double eye_height(const SkyDesc& sky) {
-  return sky.model == SkyModel::kNishita ? sky.altitude : std::clamp(sky.altitude, 1.0f, 59999.0f);
+  return std::clamp(sky.altitude, 1.0f, 59999.0f);
 }
 
 /// A step along all rays of one elevation.
@@ -157,7 +145,7 @@ class Marcher {
     for (int i = 0; i < kSteps; ++i) {
       const double t = (i + 0.5) * size;
       const double there = excess + t * (2.0 * along + t);
-      Amounts density = densities(static_cast<float>(std::sqrt(kEarth * kEarth + there) - kEarth));
+      Amounts density = densities(height_over(kRadius, static_cast<float>(there)));
       density = {density.air * sky_.air, density.dust * sky_.aerosol, density.ozone * sky_.ozone};
       depth = {depth.air + density.air * segment, depth.dust + density.dust * segment,
                depth.ozone + density.ozone * segment};
