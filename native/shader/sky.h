@@ -14,7 +14,7 @@ enum class SkyModel {
   kPreetham,            ///< "A Practical Analytic Model for Daylight", 1999
   kHosek,               ///< "An Analytic Model for Full Spectral Sky-Dome Radiance", 2012
   kNishita,             ///< until 4.5: light scattered once, by ray marching
-  kSingleScattering,    ///< from 5.0: the same with rows below the horizon
+  kSingleScattering,    ///< from 5.0: the same, fading below the horizon by its table (as in 5.2)
   kMultipleScattering,  ///< from 5.0: F. García Liñán's fit for four wavelengths
 };
 

@@ -124,8 +124,7 @@ class ScatteringSky {
     // Of the newer models the disc is added to the sky, of Nishita's it is there instead.
     const bool is_nishita = model_ == SkyModel::kNishita;
     Vec3 disc(0.0f);
-    if (has_disc_ && (d.z >= 0.0f || model_ == SkyModel::kMultipleScattering) &&
-        (is_nishita || elevation > horizon_)) {
+    if (has_disc_ && (is_nishita ? d.z >= 0.0f : elevation > horizon_)) {
       const float angle = 2.0f * fn::atan2(glm::length(d - sun_), glm::length(d + sun_));
       if (angle < 0.5f * size_) {
         disc = this->disc(elevation, angle);
@@ -149,14 +148,14 @@ class ScatteringSky {
 
   Vec3 sky(const Vec3& d, float elevation) const {
     const float x = fn::fract((fn::atan2(d.x, d.y) - kPiFloat - rotation_) / kTwoPi);
-    float y = std::sqrt(fn::abs(elevation) / (0.5f * kPiFloat));
-    float fade = 1.0f;
-    if (model_ != SkyModel::kNishita) y = (elevation < 0.0f ? -0.5f : 0.5f) * y + 0.5f;
-    if (d.z < 0.0f && model_ != SkyModel::kMultipleScattering) {  // no ground, but black soon
+    float y = std::sqrt(fn::abs(elevation) / (0.5f * kPiFloat)), fade = 1.0f;
+    if (model_ != SkyModel::kNishita) {
+      y = (elevation < 0.0f ? -0.5f : 0.5f) * y + 0.5f;
+    } else if (d.z < 0.0f) {  // there is no ground, but it is black soon
       if (d.z < -0.4f) return Vec3(0.0f);
       fade = 1.0f + 2.5f * d.z;
       fade *= fade * fade;
-      y = model_ == SkyModel::kNishita ? 0.0f : 0.508f;
+      y = 0.0f;
     }
     const Vec3 xyz = fade * look_up_sky(table_, x, y);
     return sky_rgb(xyz.x, xyz.y, xyz.z);

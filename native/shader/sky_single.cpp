@@ -202,22 +202,29 @@ Vec3d sun_at(const SkyDesc& sky, double elevation, double solid_angle) {
 }  // namespace
 
 std::vector<float> single_scattering_table(const SkyDesc& sky, ThreadPool& pool) {
+  constexpr std::size_t kRows = 128, kRow = 3 * kSkyColumns;
   const bool is_nishita = sky.model == SkyModel::kNishita;
-  const std::size_t rows = is_nishita ? 128 : 256;
-  std::vector<float> table(3 * kSkyColumns * rows, 0.0f);
-  pool.for_each_chunk(rows, 2, [&](std::size_t begin, std::size_t end) {
+  const std::size_t below = is_nishita ? 0 : kRows;  // rows under the horizon
+  const double most = is_nishita ? 0.5 * kPi * (1.0 + 1.0 / 256.0) : 0.5 * kPi;
+  const auto elevation = [&](std::size_t y) {
+    const double up = static_cast<double>(y) / kRows;
+    return most * up * up;
+  };
+  std::vector<float> table(kRow * (below + kRows));
+  pool.for_each_chunk(kRows, 2, [&](std::size_t begin, std::size_t end) {
     Marcher marcher(sky);
     for (std::size_t y = begin; y < end; ++y) {
-      double up = static_cast<double>(y) / 128.0, most = 0.5 * kPi;
-      if (is_nishita) {
-        most += 0.5 * kPi / 256.0;
-      } else {
-        up -= 1.0;
-        if (up <= 0.0) continue;  // below the horizon it stays black
-      }
-      marcher.row(most * up * up, &table[3 * kSkyColumns * y]);
+      marcher.row(elevation(y), &table[kRow * (below + y)]);
     }
   });
+  // There is no ground: the horizon goes on, and is black soon.
+  for (std::size_t y = 0; y < below; ++y) {
+    const double down = sin_cos_turns(elevation(kRows - y) / (2.0 * kPi)).sin;
+    const auto left = static_cast<float>(std::max(1.0 - 2.5 * down, 0.0));
+    for (std::size_t i = 0; i < kRow; ++i) {
+      table[kRow * y + i] = table[kRow * below + i] * (left * left * left);
+    }
+  }
   return table;
 }
 
