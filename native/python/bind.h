@@ -19,6 +19,7 @@ namespace py = pybind11;
 void bind_scene(py::module_& module);
 void bind_session(py::module_& module);
 void bind_shader(py::module_& module);
+void bind_sky(py::module_& module);
 
 /// Curves and points, which Mesh holds too.
 void bind_round(py::class_<Mesh, std::shared_ptr<Mesh>>& mesh);

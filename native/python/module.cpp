@@ -73,6 +73,7 @@ PYBIND11_MODULE(_komorebi, module) {
       .def("request", &Cancel::raise, "Asks every call that was given this flag to end.")
       .def_property_readonly("requested", &Cancel::raised);
   bind_shader(module);
+  bind_sky(module);
   bind_scene(module);
   bind_session(module);
 }

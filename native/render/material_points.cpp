@@ -166,6 +166,13 @@ const ShadePoints& MaterialPoints::fill(const RenderContext& context, const Prog
     return t.hit.instance < random.size() ? random[t.hit.instance] : 0.0f;
   });
   put_float(PointInput::kRayLength, [](const ShadeTask& t) { return t.hit.t; });
+  for (const auto& [input, column] :
+       {std::pair(PointInput::kObjectX, 0), std::pair(PointInput::kObjectY, 1),
+        std::pair(PointInput::kObjectZ, 2)}) {
+    put(input, [&, at = column](const ShadeTask& t) {
+      return Placed(context, t).instance->world_from_local[at];
+    });
+  }
   if (program.asks(PointInput::kDx) || program.asks(PointInput::kDy)) {
     Vec3 dx[Program::kLanes], dy[Program::kLanes];
     for (std::uint32_t i = 0; i < count; ++i) differentials(context, film, tasks[i], dx[i], dy[i]);

@@ -23,6 +23,9 @@ from ._komorebi import (
     force_instruction_set,
     has_op,
     known_passes,
+    sky_numbers,
+    sky_sun,
+    sky_table,
 )
 
 __all__ = [
@@ -44,4 +47,7 @@ __all__ = [
     "force_instruction_set",
     "has_op",
     "known_passes",
+    "sky_numbers",
+    "sky_sun",
+    "sky_table",
 ]

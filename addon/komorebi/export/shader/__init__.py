@@ -9,6 +9,7 @@ from . import (  # noqa: F401  they register functions of nodes
     nodes_noise,
     nodes_patterns,
     nodes_shading,
+    nodes_sky,
     nodes_surface,
     nodes_voronoi,
 )

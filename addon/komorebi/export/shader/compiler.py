@@ -60,6 +60,7 @@ class Compiler:
         # what is compiled for a point aside: "dx" or "dy", and how many such steps
         self.shift: tuple[str, Value] | None = None
         self.notes: set[str] = set()  # what is rendered as something simpler, by design
+        self.suns: list[Any] = []  # nodes_sky.SkySun: discs that a map of the world leaves out
         self._engine = engine
         self._groups: tuple[Any, ...] = ()  # group nodes that we are inside of, the outermost first
         self._done: dict[tuple[Any, ...], Outputs] = {}
