@@ -182,8 +182,11 @@ def face_materials(mesh: Any) -> IntArray | None:
 def corner_uvs(mesh: Any) -> FloatArray | None:
     """The UV map that is used for renders [corners, 2]; None: there is none."""
     layer = next((layer for layer in mesh.uv_layers if layer.active_render), None)
-    if layer is None:
-        return None
+    return None if layer is None else uvs_of_layer(mesh, layer)
+
+
+def uvs_of_layer(mesh: Any, layer: Any) -> FloatArray:
+    """One of a mesh's UV maps [corners, 2]."""
     result = np.empty(len(mesh.loops) * 2, np.float32)
     if hasattr(layer, "uv"):  # from 3.5
         layer.uv.foreach_get("vector", result)

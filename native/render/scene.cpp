@@ -216,7 +216,7 @@ void Scene::place(const InstanceInput& input, std::span<const Mat4d> poses, Thre
   }
   instance.flags = input.flags & 3u;
   instance.object_index = input.object_index;
-  instance.material_slots = input.material_slots;
+  instance.material_slots = input.material_slots & 0x7fffffffu;
   Mat3d linear(input.world_from_object);
   Mat3d inverse;
   Vec3d position = Vec3d(input.world_from_object[3]);
@@ -334,6 +334,7 @@ void Scene::commit(ThreadPool& pool, const Cancel& cancel, bool keep_inputs) {
     std::vector<Mat4d>().swap(poses_);
     inputs_gone_ = true;
   }
+  mark_filtered();
   view_meshes();
   build_tree(pool, cancel);
   if (has_camera_) {

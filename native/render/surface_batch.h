@@ -36,6 +36,8 @@ class SurfaceBatch {
   float cutoff(std::uint32_t i) const { return floats_[17][i]; }
   float frequency(std::uint32_t i) const { return floats_[18][i]; }
   Vec3 leaving_origin(std::uint32_t i) const { return vector(6, i); }
+  std::uint32_t pixel_seed(std::uint32_t i) const { return pixel_seed_[i]; }
+  std::uint32_t first_index(std::uint32_t i) const { return first_index_[i]; }
 
   void push(std::uint32_t path, const Hit& hit, float time, std::uint32_t pixel_seed,
             std::uint32_t first_index) {
