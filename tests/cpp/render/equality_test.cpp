@@ -175,6 +175,8 @@ std::shared_ptr<Scene> moving_scene(Builder builder = Builder::kLinear,
   tables.objects = {{1.0f, 101, 201, 0.3f, 1.2f}};
   if (lottery) {
     tables.materials = {{1.0f, 301}};
+    tables.value_count = 4;
+    tables.values = {0.5f, 0.25f, 2.0f, 1.0f};
     tables.slot_begin = {0, 1};
     tables.slots = {0};
     scene->set_hit_filter(lottery->filter(), {1});
@@ -205,7 +207,8 @@ void expect_batches_as_one_ray(const std::shared_ptr<Scene>& scene, Settings set
   RenderContext context = make_context(*scene, settings_, filter.view());
   SkyGuide guide;
   guide.prepare(*scene, shared_pool(), Cancel(), context);
-  Film film(settings_.region, settings_, scene->max_radiance(), scene->has_catchers());
+  Film film(settings_.region, settings_, scene->max_radiance(), scene->has_catchers(),
+            scene->tables().max_value());
   for (const Rect& cell : cells_of(settings_.region)) {
     TileSums sums;
     film.reset(sums, cell.area());
