@@ -158,19 +158,20 @@ def _native_mesh(
     cancel: Any,
     same_geometry: Any | None,
 ) -> Any:
+    attributes = {name: (a.domain, a.values) for name, a in mesh.attributes.items()}
     if isinstance(mesh, CurveData):
         return core.Mesh.from_curves(
             mesh.name, mesh.positions, mesh.radii, mesh.curve_offsets, shape=mesh.shape,
             subdivisions=mesh.subdivisions, curve_materials=mesh.curve_materials,
             curve_uvs=mesh.curve_uvs, motion_positions=mesh.motion_positions,
             motion_radii=mesh.motion_radii, step_positions=mesh.step_positions,
-            builder=builder, threads=threads, cancel=cancel,
+            attributes=attributes, builder=builder, threads=threads, cancel=cancel,
         )  # fmt: skip
     if isinstance(mesh, PointData):
         return core.Mesh.from_points(
             mesh.name, mesh.positions, mesh.radii, motion_positions=mesh.motion_positions,
             motion_radii=mesh.motion_radii, step_positions=mesh.step_positions,
-            builder=builder, threads=threads, cancel=cancel,
+            attributes=attributes, builder=builder, threads=threads, cancel=cancel,
         )  # fmt: skip
     return core.Mesh(
         mesh.name, mesh.positions, mesh.corner_verts, mesh.face_offsets,
@@ -178,6 +179,6 @@ def _native_mesh(
         vertex_normals=mesh.vertex_normals, smooth_faces=mesh.smooth_faces,
         face_materials=mesh.face_materials, corner_uvs=mesh.corner_uvs,
         motion_positions=mesh.motion_positions, motion_normals=mesh.motion_normals,
-        step_positions=mesh.step_positions,
+        step_positions=mesh.step_positions, attributes=attributes,
         builder=builder, threads=threads, cancel=cancel, same_geometry=same_geometry,
     )  # fmt: skip

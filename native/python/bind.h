@@ -24,6 +24,9 @@ void bind_sky(py::module_& module);
 /// Curves and points, which Mesh holds too.
 void bind_round(py::class_<Mesh, std::shared_ptr<Mesh>>& mesh);
 
+/// The named arrays of a mesh.
+void bind_attributes(py::class_<Mesh, std::shared_ptr<Mesh>>& mesh);
+
 /// A pool for a build: `threads` of Blender's scene, 0 for one a core. One pool is kept from call
 /// to call, because starting threads costs more than a small mesh's build.
 std::shared_ptr<ThreadPool> build_pool(unsigned threads);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bvh/traverse.h"
+#include "core/path_key.h"
 #include "render/camera_kernel.h"
 #include "render/one_ray.h"
 #include "render/pass_row.h"
@@ -86,6 +87,10 @@ void BatchIntegrator::start_camera_rays(std::uint32_t count) {
   std::fill_n(camera_rays_.words(0), count, kMaskCamera);
   std::fill_n(camera_rays_.words(1), count, kNone);
   std::fill_n(camera_rays_.words(2), count, kNone);
+  if (!context_.scene.filter.exists()) return;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    camera_rays_.words(3)[i] = path_key(block.pixel_seed[i], kDimensionPixel, block.sample[i]);
+  }
 }
 
 void BatchIntegrator::shade() {

@@ -1,7 +1,6 @@
 #include "render/material_points.h"
 
-#include <cstring>
-
+#include "core/attribute.h"
 #include "core/warp.h"
 #include "render/camera_axes.h"
 
@@ -40,25 +39,30 @@ float backfacing(const Placed& placed, const ShadeTask& task) {
   return glm::dot(world, task.direction) > 0.0f ? 1.0f : 0.0f;
 }
 
-void attribute_at(const MeshView&, const AttributeView&, std::uint32_t, float, float, float*) {}
-
-const AttributeView* find_attribute(const MeshView& mesh, const char* name) {
-  for (std::uint32_t i = 0; i < mesh.attribute_count; ++i) {
-    if (std::strcmp(mesh.attributes[i].name, name) == 0) return &mesh.attributes[i];
-  }
-  return nullptr;
-}
-
 /// Along the surface, around the vertical axis through the middle of the object (Cycles' Tangent).
 Vec3 tangent(const Placed& placed, const ShadeTask& task) {
-  float generated[4] = {0.5f, 0.5f, 0.5f, 1.0f};
+  Vec4 generated(0.5f);
   if (const AttributeView* found = find_attribute(*placed.mesh, "generated")) {
-    attribute_at(*placed.mesh, *found, task.hit.primitive, task.hit.u, task.hit.v, generated);
+    generated = attribute_at(*placed.mesh, *found, task.hit.primitive, task.hit.u, task.hit.v);
   }
-  const Vec3 around(-(generated[1] - 0.5f), generated[0] - 0.5f, 0.0f);
+  const Vec3 around(-(generated.y - 0.5f), generated.x - 0.5f, 0.0f);
   const Vec3 world = placed.instance->world_from_local * around;
   const Vec3 side = glm::cross(detail::unit_or(world, Vec3(0.0f)), task.point.normal);
   return glm::cross(task.point.normal, detail::unit_or(side, Vec3(0.0f)));
+}
+
+/// How the barycentrics of a hit change when its point moves so far in the triangle's plane.
+Vec2 barycentric_step(const Placed& placed, const ShadeTask& task, const Vec3& world) {
+  if (is_round(placed.mesh->kind)) return Vec2(0.0f);
+  const Corners at = detail::triangle_corners(*placed.mesh, task.hit.primitive, task.time);
+  const Vec3d ab(at.corner[1] - at.corner[0]), ac(at.corner[2] - at.corner[0]);
+  const Vec3d step(placed.instance->local_from_world * world);
+  const double bb = glm::dot(ab, ab), bc = glm::dot(ab, ac), cc = glm::dot(ac, ac);
+  const double determinant = bb * cc - bc * bc;
+  if (!(determinant > 0.0)) return Vec2(0.0f);
+  const double b = glm::dot(step, ab), c = glm::dot(step, ac);
+  return Vec2(static_cast<float>((b * cc - c * bc) / determinant),
+              static_cast<float>((c * bb - b * bc) / determinant));
 }
 
 /// The way back from the world to the film of a camera without a panorama's projection: where a
@@ -189,9 +193,14 @@ void MaterialPoints::fill_attributes(const RenderContext& context, const Program
   const auto& names = program.attributes();
   attributes_.resize(4 * kLanes * names.size());
   attribute_columns_.resize(4 * names.size());
+  if (names.empty()) return;
+  const FilmPlace film(context.camera);
   for (std::size_t a = 0; a < names.size(); ++a) {
     float* const to = &attributes_[4 * kLanes * a];
     for (std::size_t c = 0; c < 4; ++c) attribute_columns_[4 * a + c] = to + c * kLanes;
+    // "dx:" and "dy:" ask for how much the rest changes from pixel to pixel.
+    const bool is_x = names[a].starts_with("dx:"), is_step = is_x || names[a].starts_with("dy:");
+    const char* name = names[a].c_str() + (is_step ? 3 : 0);
     const MeshView* known = nullptr;
     const AttributeView* found = nullptr;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -199,11 +208,17 @@ void MaterialPoints::fill_attributes(const RenderContext& context, const Program
       const MeshView& mesh = context.scene.meshes[context.scene.instances[hit.instance].mesh];
       if (&mesh != known) {
         known = &mesh;
-        found = find_attribute(mesh, names[a].c_str());
+        found = find_attribute(mesh, name);
       }
-      float value[4] = {0.0f, 0.0f, 0.0f, 0.0f};
-      if (found != nullptr) attribute_at(mesh, *found, hit.primitive, hit.u, hit.v, value);
-      for (std::size_t c = 0; c < 4; ++c) to[c * kLanes + i] = value[c];
+      Vec4 value(0.0f);
+      if (found != nullptr) value = attribute_at(mesh, *found, hit.primitive, hit.u, hit.v);
+      if (found != nullptr && is_step) {
+        Vec3 dx, dy;
+        differentials(context, film, tasks[i], dx, dy);
+        const Vec2 step = barycentric_step(Placed(context, tasks[i]), tasks[i], is_x ? dx : dy);
+        value = attribute_at(mesh, *found, hit.primitive, hit.u + step.x, hit.v + step.y) - value;
+      }
+      for (std::size_t c = 0; c < 4; ++c) to[c * kLanes + i] = value[static_cast<int>(c)];
     }
   }
   points_.attribute = reinterpret_cast<const float* const(*)[4]>(attribute_columns_.data());

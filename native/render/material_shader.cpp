@@ -108,17 +108,12 @@ void MaterialShader::shade(const RenderContext& context, std::span<ShadeTask> ta
   }
 }
 
-void MaterialShader::clear_shares(const RenderContext& context, std::span<const ShadeTask> tasks,
-                                  bool to_light, float* shares) {
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    const Material& material = context.tables->surface(tasks[i].material);
-    shares[i] = 0.0f;
-    if (!material.clear) continue;
-    const SurfaceProgram& surface = material.of_vertex(tasks[i].vertex);
-    run(context, to_light ? *material.clear : *surface.program, &tasks[i], 1);
-    const std::uint32_t first = to_light ? 0 : SurfaceProgram::kTransparency;
-    shares[i] = clear_share(Outputs{rows_.data(), 0}.vector(first));
-  }
+float MaterialShader::clear_share_of(const RenderContext& context, const ShadeTask& task,
+                                     bool to_light) {
+  const Material& material = context.tables->surface(task.material);
+  const SurfaceProgram& surface = material.of_vertex(task.vertex);
+  run(context, to_light ? *material.clear : *surface.program, &task, 1);
+  return clear_share(Outputs{rows_.data(), 0}.vector(to_light ? 0 : SurfaceProgram::kTransparency));
 }
 
 }  // namespace komorebi

@@ -14,10 +14,9 @@ class MaterialShader {
   /// those of the lobes that were chosen. Hits of one material that follow each other run together.
   void shade(const RenderContext& context, std::span<ShadeTask> tasks, Shading* shadings);
 
-  /// How much of the rays that meet these hits goes straight through.
+  /// How much of the rays that meet a hit goes straight through.
   /// @param to_light  of rays that look for light, else of those that look at surfaces
-  void clear_shares(const RenderContext& context, std::span<const ShadeTask> tasks, bool to_light,
-                    float* shares);
+  float clear_share_of(const RenderContext& context, const ShadeTask& task, bool to_light);
 
  private:
   void run(const RenderContext& context, const Program& program, const ShadeTask* tasks,

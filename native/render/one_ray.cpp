@@ -1,6 +1,7 @@
 #include "render/one_ray.h"
 
 #include "bvh/traverse.h"
+#include "core/path_key.h"
 #include "render/ambient.h"
 #include "render/light.h"
 #include "render/pass_row.h"
@@ -20,6 +21,7 @@ Ray start_ray(const RenderContext& context, std::uint32_t x, std::uint32_t y,
       shutter_time(context.camera.shutter, sampler.sample_1d(kDimensionTime, sample), y);
   Ray ray = camera_ray(context.camera, film, sampler.sample_2d(kDimensionLens, sample), time);
   ray.mask = kMaskCamera;
+  ray.path_key = path_key(sampler.pixel_seed, kDimensionPixel, sample);
   return ray;
 }
 
@@ -55,12 +57,14 @@ void for_each_light_ray(const RenderContext& context, const SurfacePoint& point,
   SurfacePoint lit = point;
   if (context.bends_round && end.cutoff > 0.0f) lit.geometric_normal = point.normal;
   for (std::uint32_t j = 0; j < context.light_samples; ++j) {
-    LightSample drawn = sample_light(context, lit, sampler, sample * context.light_samples + j);
+    const std::uint32_t index = sample * context.light_samples + j;
+    LightSample drawn = sample_light(context, lit, sampler, index);
     if (drawn.contribution == Vec3(0.0f)) continue;
     const float geometric_cosine = glm::dot(drawn.direction, point.geometric_normal);
     const float share = terminate(context, end, glm::dot(drawn.direction, point.normal),
                                   geometric_cosine, drawn.contribution);
     Ray ray = light_ray(context, point, hit, drawn.direction, time);
+    ray.path_key = path_key(sampler.pixel_seed, context.light_dimension, index);
     if (share > 0.0f) {
       ray.origin += share * end.lift;
       // What lies below its own triangle has to pass over its edge.
