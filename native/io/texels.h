@@ -46,5 +46,6 @@ Texels read_texels(std::span<const std::byte> file, const std::string& name, Alp
 
 /// What reading a file would give, without its data.
 Texels read_texel_header(const std::string& path);
+Texels read_texel_header(std::span<const std::byte> file, const std::string& name);
 
 }  // namespace komorebi
