@@ -96,6 +96,7 @@ void widen(T* texels, std::size_t count, std::size_t channels, bool associate, b
 Texels read(OIIO::ImageInput& input, const std::string& name, AlphaUse alpha) {
   const OIIO::ImageSpec spec = input.spec();
   Texels texels = shape_of(name, spec);
+  if (alpha.halves && texels.type != TexelType::kFloat) texels.type = TexelType::kHalf;
   const auto channels = static_cast<std::size_t>(spec.nchannels);
   const std::size_t count = std::size_t{texels.width} * texels.height;
   const std::size_t size = texel_bytes(texels.type);

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <map>
 
+#include "core/half.h"
 #include "python/arrays.h"
 #include "python/bind.h"
 #include "texture/texture.h"
@@ -34,7 +35,7 @@ PictureUse picture_use(const std::string& color_space, const std::string& alpha_
   use.alpha.leave_out = alpha_mode == "NONE";
   if (!matrix.is_none()) {
     const auto rows = view<double>(matrix, "matrix", {3, 3});
-    use.color.has_matrix = true;
+    use.color.has_matrix = use.alpha.halves = true;
     for (std::size_t i = 0; i < 9; ++i) use.color.matrix[i] = static_cast<float>(rows[i]);
   }
   return use;
@@ -51,8 +52,9 @@ std::shared_ptr<Texture> from_reader(const char* reader, const py::object& file,
                                      const std::string& alpha_mode, const py::object& matrix,
                                      std::uint32_t skip, unsigned threads) {
   const PictureUse use = picture_use(color_space, alpha_mode, matrix);
-  const py::capsule owner = py::module_::import("komorebi_core._image")
-                                .attr(reader)(file, name, use.alpha.associate, use.alpha.leave_out);
+  const py::capsule owner =
+      py::module_::import("komorebi_core._image")
+          .attr(reader)(file, name, use.alpha.associate, use.alpha.leave_out, use.alpha.halves);
   auto& texels = *owner.get_pointer<Texels>();
   const py::gil_scoped_release release;
   return make_texture(name, std::move(texels), use, skip, threads);
@@ -78,7 +80,21 @@ Texels texels_from(const py::array& pixels, const std::string& what, TexelType t
 void use_alpha(Texels& texels, AlphaUse alpha) {
   if (texels.channels != 4) return;
   const std::size_t count = std::size_t{texels.width} * texels.height;
-  if (texels.type == TexelType::kByte) {
+  if (texels.type == TexelType::kByte && alpha.halves) {
+    const std::unique_ptr<std::byte[]> bytes = std::move(texels.data);
+    const auto* from = reinterpret_cast<const std::uint8_t*>(bytes.get());
+    texels.type = TexelType::kHalf;
+    texels.data.reset(new std::byte[texels.byte_count()]);
+    auto* to = reinterpret_cast<std::uint16_t*>(texels.data.get());
+    for (std::size_t i = 0; i < count; ++i, from += 4, to += 4) {
+      const float a = alpha.leave_out ? 1.0f : static_cast<float>(from[3]) * (1.0f / 255.0f);
+      for (int c = 0; c < 3; ++c) {
+        const float value = static_cast<float>(from[c]) * (1.0f / 255.0f);
+        to[c] = half_from_float(alpha.associate ? value * a : value);
+      }
+      to[3] = half_from_float(a);
+    }
+  } else if (texels.type == TexelType::kByte) {
     auto* p = reinterpret_cast<std::uint8_t*>(texels.data.get());
     for (std::size_t i = 0; i < count; ++i, p += 4) {
       for (int c = 0; alpha.associate && c < 3; ++c) {

@@ -33,23 +33,24 @@ py::capsule texels_capsule(Texels texels) {
 }
 
 /// Texels that the caller's capsule owns, for Texture.from_file to take.
-py::capsule read_file(const std::string& path, const std::string&, bool associate, bool leave_out) {
+py::capsule read_file(const std::string& path, const std::string&, bool associate, bool leave_out,
+                      bool halves) {
   Texels texels;
   {
     const py::gil_scoped_release release;
-    texels = read_texels(path, {associate, leave_out});
+    texels = read_texels(path, {associate, leave_out, halves});
   }
   return texels_capsule(std::move(texels));
 }
 
 py::capsule read_packed(const py::bytes& file, const std::string& name, bool associate,
-                        bool leave_out) {
+                        bool leave_out, bool halves) {
   const std::string_view data = file;
   Texels texels;
   {
     const py::gil_scoped_release release;
     texels = read_texels(std::as_bytes(std::span(data.data(), data.size())), name,
-                         {associate, leave_out});
+                         {associate, leave_out, halves});
   }
   return texels_capsule(std::move(texels));
 }

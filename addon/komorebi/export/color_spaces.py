@@ -6,9 +6,10 @@ import numpy as np
 
 from ..scene_data import DoubleArray
 
-# Linear Rec. 709 from a linear space, row by row, as Blender's OpenColorIO configurations have them.
+# Linear Rec. 709 from a linear space, row by row, as Blender's OpenColorIO configurations have it.
 _MATRICES = {
-    "P3": (1.2247329, -0.2249075, 0.0, -0.0420578, 1.0421024, 0.0, -0.0196422, -0.0786564, 1.098371),
+    "P3": (1.2247329, -0.2249075, 0.0, -0.0420578, 1.0421024, 0.0,
+           -0.0196422, -0.0786564, 1.098371),
     "2020": (1.6602063, -0.5875538, -0.0728271, -0.1245527, 1.1329457, -0.0083484,
              -0.018155, -0.1006047, 1.118832),
     "E_GAMUT": (1.9069349, -0.6928527, -0.2142466, -0.1625019, 1.3766892, -0.2141627,
