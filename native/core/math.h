@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cmath>  // std::sqrt alone: IEEE 754 demands the one correct rounding, on every machine
 
 #include "core/vector.h"
@@ -134,6 +135,11 @@ inline T atan2_radians(T y, T x) {
   return y < T(0) ? -angle : angle;
 }
 
+/// 2^k for −1022 ≤ k ≤ 1023.
+inline double power_of_two(std::int32_t k) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(k + 1023) << 52);
+}
+
 /// e^x for −700 ≤ x ≤ 700, relative error ≤ 4e-16 · (1 + |x|).
 inline double exp_double(double x) {
   constexpr double kLog2 = 0.6931471805599453094172321;
@@ -144,10 +150,30 @@ inline double exp_double(double x) {
       0.16666666666666680806,   0.041666666666488095495,   0.0083333333333196006109,
       0.0013888888952314774652, 0.00019841269890047113707, 0.000024801485482328492419,
       2.7557240918578969823e-6, 2.7632639639041029749e-7,  2.5110037605963777712e-8};
-  double value = detail::polynomial(r, c);
-  for (std::int32_t i = 0; i < k; ++i) value *= 2.0;
-  for (std::int32_t i = 0; i > k; --i) value *= 0.5;
-  return value;
+  return detail::polynomial(r, c) * power_of_two(k);
+}
+
+/// The natural logarithm of a positive, normal number, error ≤ 4e-16 · (1 + |log x|).
+inline double log_double(double x) {
+  constexpr double kLog2 = 0.6931471805599453094172321;
+  constexpr std::uint64_t kFraction = (std::uint64_t{1} << 52) - 1;
+  const auto bits = std::bit_cast<std::uint64_t>(x);
+  auto k = static_cast<std::int32_t>(bits >> 52) - 1023;
+  double m = std::bit_cast<double>((bits & kFraction) | std::bit_cast<std::uint64_t>(1.0));
+  if (m > 1.4142135623730951) {
+    m *= 0.5;
+    ++k;
+  }
+  // 2 atanh(s) as its series, |s| ≤ 3 − √8
+  const double s = (m - 1.0) / (m + 1.0);
+  constexpr double c[] = {1.0,      1.0 / 3,  1.0 / 5,  1.0 / 7,  1.0 / 9,  1.0 / 11,
+                          1.0 / 13, 1.0 / 15, 1.0 / 17, 1.0 / 19, 1.0 / 21, 1.0 / 23};
+  return 2.0 * s * detail::polynomial(s * s, c) + static_cast<double>(k) * kLog2;
+}
+
+/// Whether x is neither infinite nor NaN.
+inline bool is_finite(float x) {
+  return (std::bit_cast<std::uint32_t>(x) & 0x7f800000u) != 0x7f800000u;
 }
 
 }  // namespace komorebi

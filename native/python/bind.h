@@ -21,6 +21,7 @@ namespace py = pybind11;
 void bind_scene(py::module_& module);
 void bind_session(py::module_& module);
 void bind_shader(py::module_& module);
+void bind_sky(py::module_& module);
 void bind_texture(py::module_& module);
 
 /// Curves and points, which Mesh holds too.

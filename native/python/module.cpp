@@ -74,6 +74,7 @@ PYBIND11_MODULE(_komorebi, module) {
       .def_property_readonly("requested", &Cancel::raised);
   bind_texture(module);
   bind_shader(module);
+  bind_sky(module);
   bind_scene(module);
   bind_session(module);
 }

@@ -28,6 +28,9 @@ enum class PointInput : std::uint32_t {
   kRayLength,
   kDx,  ///< how far the position moves from this pixel to the one on its right, in the surface
   kDy,
+  kObjectX,  ///< the object's axes in the world: the columns of its matrix
+  kObjectY,
+  kObjectZ,
   kCount
 };
 inline constexpr std::size_t kPointInputs = static_cast<std::size_t>(PointInput::kCount);
@@ -57,6 +60,9 @@ inline constexpr PointInputInfo kPointInputInfo[kPointInputs] = {
     {"ray_length", 1},
     {"dx", 3},
     {"dy", 3},
+    {"object_x", 3},
+    {"object_y", 3},
+    {"object_z", 3},
 };
 
 /// Points as columns of floats, a lane a point. Only what the program asks for has to be there

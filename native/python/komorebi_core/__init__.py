@@ -14,6 +14,7 @@ from ._komorebi import (
     Scene,
     Session,
     Settings,
+    SurfaceProgram,
     Texture,
     __version__,
     build_info,
@@ -23,6 +24,9 @@ from ._komorebi import (
     force_instruction_set,
     has_op,
     known_passes,
+    sky_numbers,
+    sky_sun,
+    sky_table,
 )
 
 __all__ = [
@@ -35,6 +39,7 @@ __all__ = [
     "Scene",
     "Session",
     "Settings",
+    "SurfaceProgram",
     "Texture",
     "__version__",
     "build_info",
@@ -44,4 +49,7 @@ __all__ = [
     "force_instruction_set",
     "has_op",
     "known_passes",
+    "sky_numbers",
+    "sky_sun",
+    "sky_table",
 ]
