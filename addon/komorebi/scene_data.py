@@ -252,6 +252,22 @@ class SurfaceData:
 
 
 @dataclass(slots=True)
+class TextureImage:
+    """A picture for an Image Texture: a file, a packed file's bytes, pixels, or tiles (UDIM)."""
+
+    name: str
+    key: bytes  # the same for pictures that look the same
+    color_space: str = "LINEAR"  # or SRGB, NON_COLOR
+    alpha_mode: str = "STRAIGHT"  # or PREMUL, CHANNEL_PACKED, NONE
+    matrix: DoubleArray | None = None  # [3, 3] linear Rec. 709 from other primaries
+    path: str | None = None
+    packed: bytes | None = None
+    # [height, width, 4] uint8, straight, or [height, width, 1 or 4] float32, weighed by alpha
+    pixels: Any = None
+    tiles: dict[int, TextureImage] | None = None  # by UDIM number
+
+
+@dataclass(slots=True)
 class EnvironmentImage:
     """An equirectangular picture: either a file for the core to read, or pixels."""
 

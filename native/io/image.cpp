@@ -46,7 +46,8 @@ Image read_channels(const std::string& path) {
   image.pixels.resize(std::size_t{image.width} * image.height * image.channels.size());
   const bool read =
       input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data());
-  if (!read || input->has_error()) fail_image(path, "cannot be read" + in_brackets(input->geterror()));
+  if (!read || input->has_error())
+    fail_image(path, "cannot be read" + in_brackets(input->geterror()));
   for (const OIIO::ParamValue& value : spec.extra_attribs) {
     if (value.type() == OIIO::TypeDesc::STRING) {
       image.metadata.emplace_back(value.name().string(), value.get_string());

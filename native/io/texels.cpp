@@ -96,6 +96,7 @@ void widen(T* texels, std::size_t count, std::size_t channels, bool associate, b
 Texels read(OIIO::ImageInput& input, const std::string& name, AlphaUse alpha) {
   const OIIO::ImageSpec spec = input.spec();
   Texels texels = shape_of(name, spec);
+  if (alpha.halves && texels.type != TexelType::kFloat) texels.type = TexelType::kHalf;
   const auto channels = static_cast<std::size_t>(spec.nchannels);
   const std::size_t count = std::size_t{texels.width} * texels.height;
   const std::size_t size = texel_bytes(texels.type);
@@ -136,6 +137,19 @@ OIIO::ImageSpec straight_please() {
   return config;
 }
 
+std::unique_ptr<OIIO::ImageInput> open_memory(OIIO::Filesystem::IOMemReader& memory,
+                                              const std::string& name) {
+  OIIO::ImageSpec config = straight_please();
+  OIIO::Filesystem::IOProxy* proxy = &memory;  // readers that take a config look for it there
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  auto input = OIIO::ImageInput::open(name, &config, proxy);
+  if (!input) {
+    fail_image(name, "is not an image that can be read" + in_brackets(OIIO::geterror()));
+  }
+  input->threads(1);
+  return input;
+}
+
 }  // namespace
 
 Texels read_texels(const std::string& path, AlphaUse alpha) {
@@ -146,20 +160,16 @@ Texels read_texels(const std::string& path, AlphaUse alpha) {
 
 Texels read_texels(std::span<const std::byte> file, const std::string& name, AlphaUse alpha) {
   OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(file.data()), file.size());
-  OIIO::ImageSpec config = straight_please();
-  OIIO::Filesystem::IOProxy* proxy = &memory;  // readers that take a config look for it there
-  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  const auto input = OIIO::ImageInput::open(name, &config, proxy);
-  if (!input) {
-    fail_image(name, "is not an image that can be read" + in_brackets(OIIO::geterror()));
-  }
-  input->threads(1);
-  return read(*input, name, alpha);
+  return read(*open_memory(memory, name), name, alpha);
 }
 
 Texels read_texel_header(const std::string& path) {
-  const auto input = open_image(path);
-  return shape_of(path, input->spec());
+  return shape_of(path, open_image(path)->spec());
+}
+
+Texels read_texel_header(std::span<const std::byte> file, const std::string& name) {
+  OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(file.data()), file.size());
+  return shape_of(name, open_memory(memory, name)->spec());
 }
 
 }  // namespace komorebi

@@ -32,6 +32,8 @@ struct AlphaUse {
   /// Not for data, channels that are packed, and where alpha is left out.
   bool associate = true;
   bool leave_out = false;  ///< alpha is 1
+  /// Bytes and shorts are read as halves: for colours that are to be converted, as in Cycles.
+  bool halves = false;
 };
 
 /// Reads the first picture of a file in the type of number that it has, as Cycles does: one channel
@@ -46,5 +48,6 @@ Texels read_texels(std::span<const std::byte> file, const std::string& name, Alp
 
 /// What reading a file would give, without its data.
 Texels read_texel_header(const std::string& path);
+Texels read_texel_header(std::span<const std::byte> file, const std::string& name);
 
 }  // namespace komorebi
