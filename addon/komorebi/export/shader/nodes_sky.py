@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 from ... import core
-from ...scene_data import FloatArray, Value
+from ...scene_data import FloatArray
 from .compiler import Compiler, Outputs, node
 
 OPS = {"PREETHAM": "sky_preetham", "HOSEK_WILKIE": "sky_hosek"}  # all else: sky_scattering
@@ -49,7 +49,7 @@ def sky_texture(compiler: Compiler, node: Any) -> Outputs:
     """Camera rays see the disc. For all others the sky is without it, and `compiler.suns` has it:
     a map that is made of the sky would have to be enormous to hold a sun."""
     data = _read(node)
-    vector = node.inputs["Vector"] if "Vector" in node.inputs else None
+    vector = node.inputs.get("Vector")
     if vector is not None and compiler.is_linked(vector):
         direction = compiler.value(vector)
     elif compiler.is_world:
