@@ -7,13 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from . import cache, dump, native_world
+from . import cache, dump, native_surfaces, native_world
 from .cryptomatte import name_id
 from .mesh_cache import KnownMesh
 from .scene_data import (
     AnyMesh,
     CameraData,
     CurveData,
+    FloatArray,
+    InstanceData,
     KnownShape,
     MeshData,
     MeshKey,
@@ -65,6 +67,7 @@ def build(
             name=group.name, motion=group.motion,
         )  # fmt: skip
     scene.set_tables(**tables(data))
+    scene.set_surfaces(native_surfaces.surfaces(core, data.materials), _random(data.instances))
     world = data.world
     if parts.environment is None:
         scene.set_world_color(parts.world_color)
@@ -107,8 +110,20 @@ def tables(data: SceneData) -> dict[str, Any]:
             len(materials), -1 if materials else 0
         ),
         "slot_begin": np.cumsum([0, *map(len, slots)], dtype=np.uint32),
+        "object_colors": np.array([o.color for o in data.objects], np.float32).reshape(-1, 4),
         "slots": np.array([m for indices in slots for m in indices], np.uint32),
     }
+
+
+def _random(instances: list[InstanceData]) -> FloatArray | None:
+    """The random numbers of all instances in their order; None if nobody asks."""
+    if all(group.random is None for group in instances):
+        return None
+    numbers = [
+        np.zeros(len(group.matrices), np.float32) if group.random is None else group.random
+        for group in instances
+    ]
+    return np.concatenate(numbers)
 
 
 def _key(mesh: AnyMesh) -> MeshKey:

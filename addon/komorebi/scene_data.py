@@ -124,6 +124,7 @@ class InstanceData:
     mask: UIntArray | None = None  # [count], bits RAY_*; None: seen by every ray
     flags: UIntArray | None = None  # [count], bits FLAG_*; None: none
     material_slots: UIntArray | None = None  # [count], index into Materials.slots; None: all 0
+    random: FloatArray | None = None  # [count], from 0 to 1; None: no surface asks for it
     # At an odd number of even times from the opening of the shutter to the closing; `matrices` are
     # the middle ones. None: all of them stand still.
     motion: DoubleArray | None = None  # [count, 2k + 1, 4, 4]
@@ -132,7 +133,7 @@ class InstanceData:
         """Some of the instances, by index or by a mask [count]."""
         chosen = {
             name: None if array is None else array[rows]
-            for name in ("mask", "flags", "material_slots", "motion")
+            for name in ("mask", "flags", "material_slots", "random", "motion")
             for array in (getattr(self, name),)
         }
         return replace(
@@ -207,6 +208,38 @@ class ProgramData:
         return repr((said, self.outputs)).encode()
 
 
+@dataclass(frozen=True, slots=True)
+class Lobe:
+    """A part of a surface's light: matt reflection, or passing through to the other side."""
+
+    transmits: bool
+    has_normal: bool  # of its own, three outputs after its weight
+
+
+@dataclass(slots=True)
+class SurfacePrograms:
+    """A surface for one kind of ray. Outputs: emission, transparency (weight of what goes straight
+    through), holdout (1), then of each lobe its weight and, if it has one, its normal."""
+
+    program: ProgramData
+    lobes: tuple[Lobe, ...]
+
+
+@dataclass(slots=True)
+class SurfaceData:
+    """A material's surface."""
+
+    camera: SurfacePrograms
+    bounce: SurfacePrograms | None = None  # for rays that bounce light; None: the same
+    shadow: ProgramData | None = None  # transparency to rays that look for light; None: opaque
+    notes: set[str] = field(default_factory=set)  # what is rendered as something simpler
+
+    def programs(self) -> list[ProgramData]:
+        """All that it is made of."""
+        surfaces = [self.camera, *([self.bounce] if self.bounce else [])]
+        return [s.program for s in surfaces] + ([self.shadow] if self.shadow else [])
+
+
 @dataclass(slots=True)
 class EnvironmentImage:
     """An equirectangular picture: either a file for the core to read, or pixels."""
@@ -243,6 +276,7 @@ class ObjectData:
     # the cosine's end is cut off, 0 to 1.
     terminator_geometry_offset: float = 0.0
     terminator_shading_offset: float = 0.0
+    color: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0)  # of the viewport display, for Object Info
 
 
 @dataclass(slots=True)
@@ -252,6 +286,7 @@ class MaterialData:
     name: str
     pass_index: int
     values: list[float] = field(default_factory=list)  # passes.value_columns
+    surface: SurfaceData | None = None
 
 
 @dataclass(slots=True)

@@ -61,6 +61,7 @@ struct TimeTree {
 /// Local space is Blender's object space moved by the mesh's own origin (render/mesh.h).
 struct MeshView {
   PrimitiveKind kind = PrimitiveKind::kTriangle;
+  Vec3d object_origin{0.0};     ///< of local space, in the object's own
   std::uint32_t opaque = 1;     ///< 1: no leaf filter is ever needed
   std::uint32_t stretched = 0;  ///< 1: by its only instance, which stands still (world_normals)
   std::uint32_t triangle_count = 0;

@@ -172,7 +172,8 @@ void set_world_environment(Scene& scene, std::shared_ptr<const Environment> envi
 void set_tables(Scene& scene, const py::object& object_pass_index, const py::object& object_mattes,
                 const py::object& object_terminators, const py::object& material_pass_index,
                 const py::object& material_mattes, const py::object& slot_begin,
-                const py::object& slots, const py::object& material_values) {
+                const py::object& slots, const py::object& material_values,
+                const py::object& object_colors) {
   const auto object_index = view<float>(object_pass_index, "object_pass_index", {-1});
   const auto objects = static_cast<py::ssize_t>(object_index.size());
   const auto object_ids = view<float>(object_mattes, "object_mattes", {objects, 2});
@@ -180,6 +181,7 @@ void set_tables(Scene& scene, const py::object& object_pass_index, const py::obj
   const auto material_index = view<float>(material_pass_index, "material_pass_index", {-1});
   const auto materials = static_cast<py::ssize_t>(material_index.size());
   const auto material_ids = view<float>(material_mattes, "material_mattes", {materials});
+  const auto colors = optional_view<float>(object_colors, "object_colors", {objects, 4});
   const auto begin = view<std::uint32_t>(slot_begin, "slot_begin", {-1});
   const auto entries = view<std::uint32_t>(slots, "slots", {-1});
   SceneTables tables;
@@ -187,6 +189,9 @@ void set_tables(Scene& scene, const py::object& object_pass_index, const py::obj
     tables.objects.push_back({object_index[i], std::bit_cast<std::uint32_t>(object_ids[2 * i]),
                               std::bit_cast<std::uint32_t>(object_ids[2 * i + 1]),
                               terminator[2 * i], 1.0f / (1.0f - 0.5f * terminator[2 * i + 1])});
+    if (colors.empty()) continue;
+    tables.objects[i].color = Vec3(colors[4 * i], colors[4 * i + 1], colors[4 * i + 2]);
+    tables.objects[i].alpha = colors[4 * i + 3];
   }
   for (std::size_t i = 0; i < material_index.size(); ++i) {
     tables.materials.push_back({material_index[i], std::bit_cast<std::uint32_t>(material_ids[i])});
@@ -199,6 +204,24 @@ void set_tables(Scene& scene, const py::object& object_pass_index, const py::obj
   tables.slot_begin.assign(begin.begin(), begin.end());
   tables.slots.assign(entries.begin(), entries.end());
   scene.set_tables(std::move(tables));
+}
+
+void set_surfaces(Scene& scene, const py::list& surfaces, const py::object& instance_random) {
+  std::vector<Material> materials;
+  for (const py::handle& item : surfaces) {
+    const auto parts = item.cast<py::tuple>();
+    Material material;
+    material.camera = parts[0].cast<SurfaceProgram>();
+    if (!parts[1].is_none()) material.bounce = parts[1].cast<SurfaceProgram>();
+    if (!parts[2].is_none()) material.clear = parts[2].cast<std::shared_ptr<Program>>();
+    if (material.clear && material.clear->output_count() != 3) {
+      throw std::invalid_argument(material.clear->name() + ": a transparency has three outputs");
+    }
+    materials.push_back(std::move(material));
+  }
+  const auto random = optional_view<float>(instance_random, "instance_random",
+                                           {static_cast<py::ssize_t>(scene.instance_count())});
+  scene.set_surfaces(std::move(materials), {random.begin(), random.end()});
 }
 
 void commit(Scene& scene, unsigned threads, const std::shared_ptr<Cancel>& cancel,
@@ -314,14 +337,21 @@ void bind_scene(py::module_& module) {
       .def("set_tables", &set_tables, py::kw_only(), py::arg("object_pass_index"),
            py::arg("object_mattes"), py::arg("object_terminators"), py::arg("material_pass_index"),
            py::arg("material_mattes"), py::arg("slot_begin"), py::arg("slots"),
-           py::arg("material_values") = py::none(),
+           py::arg("material_values") = py::none(), py::arg("object_colors") = py::none(),
            "What passes tell of objects and materials. Pass indices and Cryptomatte ids: float32 "
            "[N], object_mattes [N, 2] of object and asset. object_terminators: float32 [N, 2], "
            "Blender's shadow_terminator_geometry_offset and the shading one, 0 to 1. List l of "
            "material slots is "
            "slots[slot_begin[l]:slot_begin[l + 1]], indices of materials; uint32 both. "
            "material_values: float32 [N, K], what holds all over a material; the pass \"Material "
-           "Value f n\" shows n (1 to 4) of them from number f on.")
+           "Value f n\" shows n (1 to 4) of them from number f on. object_colors: float32 [N, 4], "
+           "Blender's Object.color, for nodes that ask for it.")
+      .def("set_surfaces", &set_surfaces, py::arg("surfaces"),
+           py::arg("instance_random") = py::none(),
+           "Of each material of set_tables (SurfaceProgram to camera rays, SurfaceProgram to rays "
+           "that bounce light or None if it is the same, Program of the transparency to light "
+           "rays or None if it is opaque). instance_random: float32, a number from 0 to 1 for each "
+           "instance that was added.")
       .def(
           "set_world_color",
           [](Scene& scene, const std::array<float, 3>& c) {

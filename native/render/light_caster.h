@@ -20,6 +20,8 @@ class LightCaster {
   explicit LightCaster(const RenderContext& context)
       : context_(context), block_(context.light_samples), state_(block_.size()) {}
 
+  /// By which rays are drawn from now on, in place of the context's.
+  void set_light_dimension(std::uint32_t dimension) { context_.light_dimension = dimension; }
   std::uint32_t block_size() const { return block_.capacity(); }
   std::uint64_t ray_count() const { return rays_; }
   /// Rays of cast(), and those of them that something blocked.

@@ -265,6 +265,7 @@ std::vector<std::int32_t> Mesh::tri2corner() const {
 
 MeshView Mesh::view() const {
   MeshView view;
+  view.object_origin = origin();
   view.triangle_count = triangle_count();
   view.vertex_count = vertex_count();
   view.vtx2xyz = geometry_->vtx2xyz.data();

@@ -193,6 +193,16 @@ void Scene::set_tables(SceneTables tables) {
   tables_ = std::move(tables);
 }
 
+void Scene::set_surfaces(std::vector<Material> surfaces, std::vector<float> instance_random) {
+  require_open();
+  if (surfaces.size() != tables_.materials.size()) {
+    throw std::invalid_argument(std::to_string(surfaces.size()) + " surfaces for " +
+                                std::to_string(tables_.materials.size()) + " materials");
+  }
+  tables_.surfaces = std::move(surfaces);
+  tables_.instance_random = std::move(instance_random);
+}
+
 EnvironmentView Scene::environment() const {
   return environment_ ? environment_->view(strength_, texture_from_world_)
                       : constant_environment(world_color_);

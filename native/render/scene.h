@@ -59,6 +59,11 @@ class Scene {
   /// Throws std::invalid_argument when lists of slots name what is not there.
   void set_tables(SceneTables tables);
 
+  /// What surfaces look like, a material of the tables each; after set_tables.
+  /// @param instance_random  of each instance a number from 0 to 1, or none at all
+  /// std::invalid_argument when their number is not that of the tables.
+  void set_surfaces(std::vector<Material> surfaces, std::vector<float> instance_random);
+
   /// Builds the tree over instances. Throws Cancelled; after it the scene can only be dropped.
   /// @param keep_inputs  for inputs(); else what was added is given back, 152 bytes an instance
   void commit(ThreadPool& pool, const Cancel& cancel, bool keep_inputs = true);

@@ -1,21 +1,9 @@
+#include "shader/op_lanes.h"
 #include "shader/op_table.h"
 #include "shader/scalar_math.h"
 
 namespace komorebi {
 namespace {
-
-template <float (*f)(float)>
-void run1(const OpCall& c) {
-  map1(c, f);
-}
-template <float (*f)(float, float)>
-void run2(const OpCall& c) {
-  map2(c, f);
-}
-template <float (*f)(float, float, float)>
-void run3(const OpCall& c) {
-  map3(c, f);
-}
 
 // Named after the operations of Blender's Math node.
 constexpr OpInfo kOps[] = {

@@ -1,63 +1,48 @@
+#include "shader/op_lanes.h"
 #include "shader/op_table.h"
 #include "shader/vector_math.h"
 
 namespace komorebi {
 namespace {
 
-Vec3 vector(const OpCall& c, std::uint32_t first, std::uint32_t lane) {
-  return Vec3(c.in[first][lane], c.in[first + 1][lane], c.in[first + 2][lane]);
-}
-
-// f(lane) → a vector
-template <class F>
-void to_vector(const OpCall& c, F f) {
-  for (std::uint32_t i = 0; i < c.count; ++i) {
-    const Vec3 v = f(i);
-    for (int k = 0; k < 3; ++k) c.out[k][i] = v[k];
-  }
-}
-
-// f(lane) → a number
-template <class F>
-void to_number(const OpCall& c, F f) {
-  for (std::uint32_t i = 0; i < c.count; ++i) c.out[0][i] = f(i);
-}
-
 constexpr OpInfo kOps[] = {
     {"normalize",
      [](const OpCall& c) {
-       to_vector(c, [&](std::uint32_t i) { return node::safe_normalize(vector(c, 0, i)); });
+       to_vector(c, [&](std::uint32_t i) { return node::safe_normalize(input_vector(c, 0, i)); });
      },
      3, 3},
     {"length",
      [](const OpCall& c) {
-       to_number(c, [&](std::uint32_t i) { return node::length(vector(c, 0, i)); });
+       to_number(c, [&](std::uint32_t i) { return node::length(input_vector(c, 0, i)); });
      },
      3, 1},
     {"cross_product",
      [](const OpCall& c) {
-       to_vector(c, [&](std::uint32_t i) { return cross(vector(c, 0, i), vector(c, 3, i)); });
+       to_vector(
+           c, [&](std::uint32_t i) { return cross(input_vector(c, 0, i), input_vector(c, 3, i)); });
      },
      6, 3},
     // in: a, b; a's part along b
     {"project",
      [](const OpCall& c) {
-       to_vector(c,
-                 [&](std::uint32_t i) { return node::project(vector(c, 0, i), vector(c, 3, i)); });
+       to_vector(c, [&](std::uint32_t i) {
+         return node::project(input_vector(c, 0, i), input_vector(c, 3, i));
+       });
      },
      6, 3},
     // in: a, normal
     {"reflect",
      [](const OpCall& c) {
-       to_vector(c,
-                 [&](std::uint32_t i) { return node::reflect(vector(c, 0, i), vector(c, 3, i)); });
+       to_vector(c, [&](std::uint32_t i) {
+         return node::reflect(input_vector(c, 0, i), input_vector(c, 3, i));
+       });
      },
      6, 3},
     // in: a, normal, ratio of the indices of refraction
     {"refract",
      [](const OpCall& c) {
        to_vector(c, [&](std::uint32_t i) {
-         return node::refract(vector(c, 0, i), node::unit(vector(c, 3, i)), c.in[6][i]);
+         return node::refract(input_vector(c, 0, i), node::unit(input_vector(c, 3, i)), c.in[6][i]);
        });
      },
      7, 3},
@@ -65,8 +50,8 @@ constexpr OpInfo kOps[] = {
     {"faceforward",
      [](const OpCall& c) {
        to_vector(c, [&](std::uint32_t i) {
-         const Vec3 a = vector(c, 0, i);
-         return dot(vector(c, 6, i), vector(c, 3, i)) < 0.0f ? a : -a;
+         const Vec3 a = input_vector(c, 0, i);
+         return dot(input_vector(c, 6, i), input_vector(c, 3, i)) < 0.0f ? a : -a;
        });
      },
      9, 3},
@@ -74,9 +59,9 @@ constexpr OpInfo kOps[] = {
     {"rotate_axis",
      [](const OpCall& c) {
        to_vector(c, [&](std::uint32_t i) {
-         const Vec3 centre = vector(c, 3, i), axis = vector(c, 6, i);
-         if (node::length(axis) == 0.0f) return vector(c, 0, i);
-         return node::rotate(vector(c, 0, i) - centre, node::unit(axis), c.in[9][i]) + centre;
+         const Vec3 centre = input_vector(c, 3, i), axis = input_vector(c, 6, i);
+         if (node::length(axis) == 0.0f) return input_vector(c, 0, i);
+         return node::rotate(input_vector(c, 0, i) - centre, node::unit(axis), c.in[9][i]) + centre;
        });
      },
      10, 3},
@@ -84,7 +69,8 @@ constexpr OpInfo kOps[] = {
     {"rotate_euler",
      [](const OpCall& c) {
        to_vector(c, [&](std::uint32_t i) {
-         return node::rotate_euler(vector(c, 0, i), vector(c, 3, i), c.numbers[0] != 0.0f);
+         return node::rotate_euler(input_vector(c, 0, i), input_vector(c, 3, i),
+                                   c.numbers[0] != 0.0f);
        });
      },
      6, 3, 1},
@@ -93,7 +79,7 @@ constexpr OpInfo kOps[] = {
      [](const OpCall& c) {
        const float* m = c.numbers;
        to_vector(c, [&](std::uint32_t i) {
-         const Vec3 v = vector(c, 0, i);
+         const Vec3 v = input_vector(c, 0, i);
          return Vec3(m[0] * v.x + m[1] * v.y + m[2] * v.z + m[3],
                      m[4] * v.x + m[5] * v.y + m[6] * v.z + m[7],
                      m[8] * v.x + m[9] * v.y + m[10] * v.z + m[11]);
@@ -104,8 +90,9 @@ constexpr OpInfo kOps[] = {
     {"from_axes",
      [](const OpCall& c) {
        to_vector(c, [&](std::uint32_t i) {
-         const Vec3 v = vector(c, 0, i);
-         return vector(c, 3, i) * v.x + vector(c, 6, i) * v.y + vector(c, 9, i) * v.z;
+         const Vec3 v = input_vector(c, 0, i);
+         return input_vector(c, 3, i) * v.x + input_vector(c, 6, i) * v.y +
+                input_vector(c, 9, i) * v.z;
        });
      },
      12, 3},
@@ -113,7 +100,8 @@ constexpr OpInfo kOps[] = {
     {"to_axes",
      [](const OpCall& c) {
        to_vector(c, [&](std::uint32_t i) {
-         return node::solve(vector(c, 3, i), vector(c, 6, i), vector(c, 9, i), vector(c, 0, i));
+         return node::solve(input_vector(c, 3, i), input_vector(c, 6, i), input_vector(c, 9, i),
+                            input_vector(c, 0, i));
        });
      },
      12, 3},
@@ -121,8 +109,8 @@ constexpr OpInfo kOps[] = {
     {"normal_from_axes",
      [](const OpCall& c) {
        to_vector(c, [&](std::uint32_t i) {
-         return node::normal_from_axes(vector(c, 3, i), vector(c, 6, i), vector(c, 9, i),
-                                       vector(c, 0, i));
+         return node::normal_from_axes(input_vector(c, 3, i), input_vector(c, 6, i),
+                                       input_vector(c, 9, i), input_vector(c, 0, i));
        });
      },
      12, 3},
@@ -130,8 +118,9 @@ constexpr OpInfo kOps[] = {
     {"normal_to_axes",
      [](const OpCall& c) {
        to_vector(c, [&](std::uint32_t i) {
-         const Vec3 n = vector(c, 0, i);
-         return Vec3(dot(vector(c, 3, i), n), dot(vector(c, 6, i), n), dot(vector(c, 9, i), n));
+         const Vec3 n = input_vector(c, 0, i);
+         return Vec3(dot(input_vector(c, 3, i), n), dot(input_vector(c, 6, i), n),
+                     dot(input_vector(c, 9, i), n));
        });
      },
      12, 3},

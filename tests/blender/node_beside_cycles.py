@@ -17,7 +17,7 @@ from komorebi import reporting
 from komorebi.export.shader import Compiler, Ray
 
 SIZE = (48, 24)
-MOST = 1.0 / 255.0  # mean of absolute differences, in parts of the range
+MOST = 1e-4  # mean of absolute differences, in parts of the range
 
 
 class Reports:
@@ -43,6 +43,7 @@ class Stage:
         cycles.samples, cycles.filter_width, cycles.pixel_filter_type = 1, 0.01, "BLACKMAN_HARRIS"
         cycles.use_adaptive_sampling = cycles.use_denoising = False
         cycles.sample_clamp_direct = cycles.max_bounces = 0
+        scene.render.film_transparent = surface is not None
         if surface is None:
             camera = scene.camera.data
             camera.type = "PANO"
@@ -59,6 +60,7 @@ class Stage:
             scene.world.node_tree.nodes.clear()
         owner.use_nodes = True
         self.scene, self.tree, self.is_world = scene, owner.node_tree, surface is None
+        self.surface, self.seen = surface, slice(None)
         self.warnings = []
         self._points = None
         self.clear()
@@ -127,7 +129,10 @@ class Stage:
         self.scene.render.engine = "CYCLES"
         with tempfile.TemporaryDirectory() as folder:
             picture = support.render(Path(folder), scene=self.scene)
-        return picture.reshape(-1, picture.shape[-1])[:, :3].copy()
+        pixels = picture.reshape(-1, picture.shape[-1])
+        if not self.is_world and self._points is None:
+            self.seen = pixels[:, 3] == 1.0
+        return pixels[self.seen, :3].copy()
 
     def points(self):
         """Inputs and attributes of all points, by name."""
@@ -144,10 +149,29 @@ class Stage:
             attributes = {}
             if not self.is_world:
                 for name, output in (("generated", "Generated"), ("uv:", "UV")):
-                    rgb = self.cycles(coordinate.outputs[output])
-                    attributes[name] = np.column_stack([rgb, np.ones(len(rgb))]).astype(np.float32)
+                    attributes[name] = with_alpha(self.cycles(coordinate.outputs[output]))
+                show |= self._of_object(len(show["position"]))
             self._points = show, attributes
         return self._points
+
+    def _of_object(self, count):
+        """What is the same all over the object, of Blender's own."""
+        thing = self.surface
+        matrix = np.array(thing.matrix_world, np.float32)
+        rows = {f"object_{axis}": matrix[:3, k] for k, axis in enumerate("xyz")}
+        rows |= {"object_location": matrix[:3, 3], "object_color": thing.color[:3],
+                 "object_alpha": thing.color[3:], "object_index": [thing.pass_index],
+                 "material_index": [thing.active_material.pass_index]}  # fmt: skip
+        return {
+            name: np.tile(np.asarray(row, np.float32), (count, 1)) for name, row in rows.items()
+        }
+
+    def camera_from_world(self):
+        """As Cycles has the camera's space: right, up and depth; a panorama's: depth, left and up."""
+        axes = np.diag([1, 1, -1, 1])
+        if self.is_world:
+            axes = np.array([[0, 0, -1, 0], [-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+        return axes @ np.array(self.scene.camera.matrix_world.inverted())
 
     def ours(self, socket, ray=None):
         """[points, 3] as our program has it."""
@@ -156,6 +180,7 @@ class Stage:
         reporting.begin()
         reports = Reports()
         compiler = Compiler(reports, "Under test", ray or Ray(), is_world=self.is_world)
+        compiler.camera_from_world = self.camera_from_world()
         outputs = compiler.value(self.sink)
         self.warnings = reports.sentences
         program = core.Program("Under test", compiler.builder.ops, list(outputs))
@@ -169,6 +194,10 @@ class Stage:
         ours = np.where(np.isfinite(ours).all(axis=1, keepdims=True), ours, 0.0)
         extent = max(float(np.ptp(theirs)), 0.1)
         return float(np.abs(theirs - ours).mean()) / extent, theirs, ours
+
+
+def with_alpha(rgb):
+    return np.column_stack([rgb, np.ones(len(rgb))]).astype(np.float32)
 
 
 def compare(stage, build, name="", most=MOST, warned=0):

@@ -37,6 +37,7 @@ class Job:
     frame: int | None = None
     camera: str | None = None
     stereo: str | None = None
+    bounces: int = 0
 
 
 @dataclass(frozen=True)

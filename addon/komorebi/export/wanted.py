@@ -11,11 +11,8 @@ class Wanted:
     """What is exported besides what light needs."""
 
     uvs: bool = False
-    materials: bool = False
 
     @staticmethod
     def by(sources: Collection[str]) -> Wanted:
         """For the core's passes that are kept."""
-        of_materials = ("Material Index", "Material Value", "CryptoMaterial")
-        materials = any(s.startswith(of_materials) for s in sources)
-        return Wanted(uvs="UV" in sources, materials=materials)
+        return Wanted(uvs="UV" in sources)

@@ -231,6 +231,34 @@ TEST_P(Equality, BatchesAgreeWithOneRayInMotion) {
   expect_batches_as_one_ray(moving_scene(), settings_);
 }
 
+TEST_P(Equality, BatchesAgreeWithOneRayAfterAnotherThroughBounces) {
+  settings_.samples = 3;
+  for (const std::uint32_t bounces : {1u, 2u, 5u}) {  // of the last, paths end by roulette
+    settings_.bounces = bounces;
+    expect_batches_as_one_ray(telling_scene(), settings_);
+    settings_.sample_clamp_direct = 0.5f;
+    settings_.sample_clamp_indirect = 0.2f;
+  }
+  expect_batches_as_one_ray(moving_scene(), settings_);
+}
+
+TEST_P(Equality, ThroughBouncesThreadsTilesBuildersAndInstructionSetsDoNotShow) {
+  settings_.bounces = 4;
+  const auto scene = busy_scene();
+  const auto expected = render(scene, settings_);
+  settings_.threads = 1;
+  settings_.tile_size = 24;
+  EXPECT_EQ(render(scene, settings_), expected);
+  EXPECT_EQ(render(busy_scene(Builder::kList), settings_), expected);
+  for (const std::string& name : built_instruction_sets()) {
+    force_instruction_set(name);
+    EXPECT_EQ(render(scene, settings_), expected) << name;
+  }
+  force_instruction_set("");
+  settings_.bounces = 3;
+  EXPECT_NE(render(scene, settings_), expected);
+}
+
 TEST_P(Equality, OfMotionThreadsTilesBuildersAndInstructionSetsDoNotShow) {
   const auto scene = moving_scene();
   const auto expected = render(scene, settings_);

@@ -55,6 +55,12 @@ class Compiler:
         self.owner = owner  # how warnings begin: world "World"
         self.map_size = 0  # columns of the largest environment map
         self.suns: list[Any] = []  # nodes_sky.SkySun: discs that a map of the world leaves out
+        # [3, 4] rows of the matrix into the camera's space (right, up, depth; a
+        # panorama's: depth, left, up), where it is known
+        self.camera_from_world: Any = None
+        # what is compiled for a point aside: "dx" or "dy", and how many such steps
+        self.shift: tuple[str, Value] | None = None
+        self.notes: set[str] = set()  # what is rendered as something simpler, by design
         self._engine = engine
         self._groups: tuple[Any, ...] = ()  # group nodes that we are inside of, the outermost first
         self._done: dict[tuple[Any, ...], Outputs] = {}
@@ -65,6 +71,10 @@ class Compiler:
     def warn(self, node: Any, what: str) -> None:
         label = node.bl_label or node.type
         reporting.warn(self._engine, f'{self.owner}, node "{name_of(node)}" ({label}): {what}')
+
+    def note(self, what: str) -> None:
+        """For the statistics, not a warning: the engine means to render it as something simpler."""
+        self.notes.add(what)
 
     def is_linked(self, socket: Any) -> bool:
         return self._source(socket) is not None
@@ -93,6 +103,15 @@ class Compiler:
             return value  # type: ignore[return-value]
         weight = self.builder.convert(value, kind, "RGBA")  # type: ignore[arg-type]
         return (Closure("EMISSION", weight),)
+
+    @contextmanager
+    def shifted(self, way: str, width: Value) -> Iterator[None]:
+        """What is compiled meanwhile is for a point aside: `width` pixels along "dx" or "dy"."""
+        before, self.shift = self.shift, (way, width)
+        try:
+            yield
+        finally:
+            self.shift = before
 
     # The walk.
 
@@ -140,7 +159,7 @@ class Compiler:
         )
         if inner is None:
             return None
-        key = (*self._path(), group.as_pointer(), feeding.identifier)
+        key = (*self._path(), group.as_pointer(), feeding.identifier, self.shift)
         if key in self._open or len(self._open) > MAX_DEPTH:
             self.warn(group, "is part of a circle or of too long a row of nodes, and left out")
             return None
@@ -158,7 +177,7 @@ class Compiler:
         return self.builder.convert(value, kind, inner.type), inner.type  # type: ignore[arg-type]
 
     def _outputs(self, node: Any) -> Outputs | None:
-        key = (*self._path(), node.as_pointer())
+        key = (*self._path(), node.as_pointer(), self.shift)
         known = self._done.get(key)
         if known is not None:
             return known
@@ -175,7 +194,7 @@ class Compiler:
         return outputs
 
     def _unknown(self, node: Any) -> Outputs:
-        """A node that nobody knows passes on its first input of the same type, or all its shaders."""
+        """A node that nobody knows passes on an input of the same type, or all its shaders."""
         outputs: Outputs = {}
         for socket in node.outputs:
             if socket.type == "SHADER":

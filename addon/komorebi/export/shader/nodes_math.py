@@ -19,10 +19,11 @@ _OPERATIONS = {
 _ARITY = {name: count for count, names in _OPERATIONS.items() for name in names.split()}
 _SCALED = {"RADIANS": math.pi / 180.0, "DEGREES": 180.0 / math.pi}
 # Those of Vector Math that go component by component.
-_BY_COMPONENT = set(
-    "ADD SUBTRACT MULTIPLY DIVIDE MULTIPLY_ADD ABSOLUTE MINIMUM MAXIMUM FLOOR CEIL MODULO WRAP "
-    "SNAP SINE COSINE TANGENT POWER SIGN ROUND".split()
-)
+_BY_COMPONENT = {
+    "ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "MULTIPLY_ADD", "ABSOLUTE", "MINIMUM", "MAXIMUM",
+    "FLOOR", "CEIL", "MODULO", "WRAP", "SNAP", "SINE", "COSINE", "TANGENT", "POWER", "SIGN",
+    "ROUND"
+}  # fmt: skip
 
 
 def operate(b: Builder, operation: str, inputs: list[Value]) -> Value | None:
@@ -112,7 +113,7 @@ def map_range(compiler: Compiler, node: Any) -> Outputs:
     if not is_vector:  # one number: a range that is empty gives 0
         same = b.each("compare", from_low, from_high, (0.0,))
         result = b.multiply(result, b.subtract((1.0,), same))
-    if node.clamp and kind in {"LINEAR", "STEPPED"}:
+    if node.clamp and not (is_vector and kind.startswith("SMOOTH")):
         low, high = b.each("minimum", to_low, to_high), b.each("maximum", to_low, to_high)
         result = b.each("clamp", result, low, high)
     return {node.outputs["Vector" if is_vector else "Result"].identifier: result}
