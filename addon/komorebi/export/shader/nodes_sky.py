@@ -8,8 +8,9 @@ from functools import lru_cache
 from typing import Any
 
 from ... import core
-from ...scene_data import FloatArray, Value
+from ...scene_data import FloatArray
 from .compiler import Compiler, Outputs, node
+from .nodes_coordinates import vector_input
 
 OPS = {"PREETHAM": "sky_preetham", "HOSEK_WILKIE": "sky_hosek"}  # all else: sky_scattering
 SMALLEST_SUN = 0.0005  # radians; Cycles draws none that is smaller
@@ -49,13 +50,7 @@ def sky_texture(compiler: Compiler, node: Any) -> Outputs:
     """Camera rays see the disc. For all others the sky is without it, and `compiler.suns` has it:
     a map that is made of the sky would have to be enormous to hold a sun."""
     data = _read(node)
-    vector = node.inputs["Vector"] if "Vector" in node.inputs else None
-    if vector is not None and compiler.is_linked(vector):
-        direction = compiler.value(vector)
-    elif compiler.is_world:
-        direction = compiler.builder.input("position")
-    else:
-        direction = compiler.builder.attribute("generated")[:3]
+    direction = vector_input(compiler, node)
     table = None if data.model in OPS else _table(_of_table(data))
     if data.sun_disc and compiler.ray.kind != "CAMERA":
         sun = SkySun(*core.load().sky_sun(data, table))
