@@ -129,9 +129,8 @@ def render_frame(engine: Any, _depsgraph: Any, frame: Frame) -> None:
         lambda: native_scene.load(native, frame.scene, _expected_rays(frame), threads, cancel),
     )  # fmt: skip
     _warn_environment(engine, parts.environment)
-    for mesh in parts.meshes:
-        for sentence in mesh.warnings:
-            reporting.warn(engine, sentence)
+    for sentence in [*parts.warnings, *(s for mesh in parts.meshes for s in mesh.warnings)]:
+        reporting.warn(engine, sentence)
     for view in frame.views:
         _render_view(engine, frame, parts, view)
         if engine.test_break():

@@ -129,15 +129,15 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
     )  # fmt: skip
     bounces: IntProperty(
         name="Bounces",
-        description="How often light goes from surface to surface under World Light: 0 is what comes "
-        "straight from the world; each more brightens what faces other surfaces",
+        description="How often light goes from surface to surface under World Light: 0 is what "
+        "comes straight from the world; each more brightens what faces other surfaces",
         default=2, min=0, max=1024, soft_max=16,
     )  # fmt: skip
     # Not Blender's ao_bounces, which are those of Fast GI.
     ao_indirect_bounces: IntProperty(
         name="Bounces",
-        description="How often the white sky's light goes from surface to surface before it comes to "
-        "what is seen: 0 is plain ambient occlusion",
+        description="How often the white sky's light goes from surface to surface before it comes "
+        "to what is seen: 0 is plain ambient occlusion",
         default=0, min=0, max=1024, soft_max=16,
     )  # fmt: skip
     sample_clamp_direct: FloatProperty(
@@ -165,6 +165,12 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         description="Columns of pixels of the map that lights the scene where the world is more "
         "than one picture; 0 is automatic: 1024, or as many as its largest picture has",
         default=0, min=0, max=16384,
+    )  # fmt: skip
+    texture_limit: IntProperty(
+        name="Texture Limit",
+        description="Memory in MiB that pictures on surfaces may take together; when there are "
+        "more, the largest are rendered at half their width, and a warning says so",
+        default=1024, min=16, soft_max=65536,
     )  # fmt: skip
     filter_width: FloatProperty(
         name="Width", description="Width of the pixel filter",

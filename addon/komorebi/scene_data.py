@@ -334,6 +334,7 @@ class SceneData:
     instances: list[InstanceData] = field(default_factory=list)
     objects: list[ObjectData] = field(default_factory=list)
     materials: Materials = field(default_factory=Materials)
+    texture_limit: int = 1 << 30  # bytes of all textures together
     ignored: dict[str, int] = field(default_factory=dict)  # kind of object → how many
 
     @property

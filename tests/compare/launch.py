@@ -38,6 +38,7 @@ class Job:
     camera: str | None = None
     stereo: str | None = None
     bounces: int = 0
+    materials: bool = False
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ class MaterialExporter:
     def __init__(self, engine: Any, scene: Any, view_layer: Any, materials: Materials) -> None:
         self._engine = engine
         self._look = look_of(scene)
+        self._frame = scene.frame_current
         self._override = view_layer.material_override
         self._materials = materials
         self._aovs = AovReader(engine, value_columns(view_layer))
@@ -59,7 +60,7 @@ class MaterialExporter:
         if index is None:
             index = self._index[pointer] = len(self._materials.materials)
             values = self._aovs.values_of(material)
-            surface = export_surface(self._engine, material, self._look)
+            surface = export_surface(self._engine, material, self._look, self._frame)
             self._attributes.append(_attributes(surface))
             self.asks_random |= any(_asks_random(p) for p in surface.programs())
             self._materials.materials.append(

@@ -37,7 +37,7 @@ def look_of(scene: Any) -> Look:
     return Look(color, settings.clay_bump, settings.clay_glass == "SKIP", is_light)
 
 
-def export_surface(engine: Any, material: Any | None, look: Look) -> SurfaceData:
+def export_surface(engine: Any, material: Any | None, look: Look, frame: int = 1) -> SurfaceData:
     """The programs of a material, and what of it is rendered as something else."""
     if material is None:
         return SurfaceData(_even((0.8, 0.8, 0.8), look))
@@ -51,9 +51,11 @@ def export_surface(engine: Any, material: Any | None, look: Look) -> SurfaceData
     if output is None:
         return SurfaceData(_even((0.0, 0.0, 0.0), look))
     owner = f'material "{name_of(material)}"'
-    compilers = {kind: Compiler(engine, owner, Ray(kind)) for kind in ("CAMERA", "DIFFUSE")}
+    compilers = {
+        kind: Compiler(engine, owner, Ray(kind), frame=frame) for kind in ("CAMERA", "DIFFUSE")
+    }
     camera, bounce = (_surface(c, output, look) for c in compilers.values())
-    shadow = Compiler(engine, owner, Ray("SHADOW"))
+    shadow = Compiler(engine, owner, Ray("SHADOW"), frame=frame)
     clear = _transparency(shadow, _closures(shadow, output), look)
     return SurfaceData(
         camera,

@@ -8,7 +8,17 @@ from __future__ import annotations
 import bpy
 
 from . import (
-    adopted, camera, light, light_paths, material, menus, object, render, sampling, view_layer, world,
+    adopted,
+    camera,
+    light,
+    light_paths,
+    material,
+    menus,
+    object,
+    render,
+    sampling,
+    view_layer,
+    world,
 )  # fmt: skip
 from .base import ENGINE_ID
 

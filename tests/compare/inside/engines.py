@@ -44,7 +44,7 @@ def owen_scramble(cycles: Any) -> None:
     raise RuntimeError("this Cycles has no sampling pattern that a seed changes")
 
 
-def set_cycles(scene: Any, samples: int, bounces: int) -> None:
+def set_cycles(scene: Any, samples: int, bounces: int, materials: bool) -> None:
     """Cycles on the CPU: diffuse bounces alone, box filter, and nothing that biases or stops early."""
     if not hasattr(scene, "cycles"):
         raise RuntimeError(
@@ -67,9 +67,9 @@ def set_cycles(scene: Any, samples: int, bounces: int) -> None:
         scene.cycles,
         diffuse_bounces=bounces,
         glossy_bounces=0,
-        transmission_bounces=0,
+        transmission_bounces=bounces,  # what comes through translucent surfaces
         volume_bounces=0,
-        transparent_max_bounces=0,
+        transparent_max_bounces=1024 if materials else 0,
         feature_set="SUPPORTED",
         shading_system=False,
         film_exposure=1.0,
@@ -84,7 +84,7 @@ def set_cycles(scene: Any, samples: int, bounces: int) -> None:
     )
 
 
-def set_komorebi(scene: Any, samples: int, mode: str, bounces: int) -> None:
+def set_komorebi(scene: Any, samples: int, mode: str, bounces: int, materials: bool) -> None:
     """Komorebi with every property that the comparison relies on; raises KeyError where one is
     missing."""
     if not hasattr(scene, "komorebi"):
@@ -106,7 +106,7 @@ def set_komorebi(scene: Any, samples: int, mode: str, bounces: int) -> None:
     require(scene.komorebi, environment_sampling="MIS", pixel_filter="BOX", use_progressive=True)
     settle_all(
         scene.komorebi,
-        surface="CLAY",
+        surface="MATERIAL" if materials else "CLAY",
         use_adaptive_sampling=False,
         time_limit=0.0,
         use_denoising=False,

@@ -48,10 +48,13 @@ class Ray:
 class Compiler:
     """Compiles sockets of one tree for one kind of ray into one Builder."""
 
-    def __init__(self, engine: Any, owner: str, ray: Ray, *, is_world: bool = False) -> None:
+    def __init__(
+        self, engine: Any, owner: str, ray: Ray, *, is_world: bool = False, frame: int = 1
+    ) -> None:
         self.builder = Builder()
         self.ray = ray
         self.is_world = is_world
+        self.frame = frame  # of the scene, for sequences of pictures
         self.owner = owner  # how warnings begin: world "World"
         self.map_size = 0  # columns of the largest environment map
         # [3, 4] rows of the matrix into the camera's space (right, up, depth; a
