@@ -82,7 +82,8 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
     )  # fmt: skip
     light_samples: IntProperty(
         name="Light Samples",
-        description="Light rays for each camera sample; 0 is automatic: 8, or 4 where better",
+        description="Light rays for each camera sample; 0 is automatic: 8, or 4 where "
+        "better, with bounces down to 1",
         default=0, min=0, max=1024,
     )  # fmt: skip
     sample_offset: IntProperty(

@@ -32,10 +32,13 @@ BatchIntegrator::BatchIntegrator(const RenderContext& context)
 }
 
 std::uint64_t BatchIntegrator::ray_count() const {
-  std::uint64_t count = camera_ray_count_ + light_caster_.ray_count() + bounces_.ray_count() +
-                        bounces_alone_.ray_count();
+  std::uint64_t count = camera_ray_count_ + light_caster_.ray_count() + bounce_ray_count();
   for (const Ambient& ambient : ambient_) count += ambient.caster.ray_count();
   return count;
+}
+
+std::uint64_t BatchIntegrator::bounce_ray_count() const {
+  return bounces_.ray_count() + bounces_alone_.ray_count();
 }
 
 RayTally BatchIntegrator::ambient_tally() const {

@@ -37,6 +37,7 @@ class BatchIntegrator {
               const Cancel& cancel);
 
   std::uint64_t ray_count() const;
+  std::uint64_t bounce_ray_count() const;
   /// Of the rays that look for ambient occlusion, as picture or as pass.
   RayTally ambient_tally() const;
 

@@ -1,7 +1,6 @@
 #include "render/bounce_tracer.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "render/shade.h"
 
@@ -37,6 +36,18 @@ void BounceTracer::leave(std::uint32_t vertex, const SurfaceBatch& surfaces, std
   next_states_.push_back(state);
 }
 
+/// The rays that left the last surfaces are those to be traced now.
+void BounceTracer::take_next() {
+  const RaySpan next = next_rays_.span();
+  rays_.clear();
+  states_.clear();
+  for (const std::uint32_t i : order_.sort(next)) {
+    rays_.push(next[i]);
+    states_.push_back(next_states_[i]);
+  }
+  clear();
+}
+
 bool BounceTracer::find_surfaces(std::uint32_t vertex, const Cancel& cancel) {
   const RaySpan rays = rays_.span();
   hits_.resize(rays.count);
@@ -66,9 +77,7 @@ bool BounceTracer::find_surfaces(std::uint32_t vertex, const Cancel& cancel) {
 bool BounceTracer::trace(const Cancel& cancel,
                          FunctionRef<void(std::uint32_t path, const Vec3& light)> visit) {
   for (std::uint32_t vertex = 1; !next_states_.empty(); ++vertex) {
-    std::swap(rays_, next_rays_);
-    std::swap(states_, next_states_);
-    clear();
+    take_next();
     if (!find_surfaces(vertex, cancel)) return false;
     for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
       State state = states_[surfaces_.path(s)];

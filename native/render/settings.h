@@ -26,7 +26,7 @@ struct Rect {
 /// Films of up to as many samples have finer units than larger ones.
 inline constexpr std::uint32_t kManySamples = 1u << 16;
 
-/// Light rays per camera sample when the settings leave it open, or half as many
+/// Light rays per camera sample when the settings leave it open, or half as many, with bounces less
 /// (choose_light_samples): those with which a picture is good soonest. More than these leave too
 /// few camera samples to edges, and to a map seen behind.
 inline constexpr std::uint32_t kAutomaticLightSamples = 8;
