@@ -19,7 +19,8 @@ struct HitQuery {
 /// is drawn by the ray's path_key, instance and primitive. So the closest hit is the closest of
 /// those that count, whatever tree, bundle or instruction set finds it.
 struct HitFilter {
-  /// Writes to accepted[i], i < count, whether the hit of queries[i] counts.
+  /// Writes to accepted[i], i < count, whether the hit of queries[i] counts; from many threads at
+  /// once.
   using Accepts = void(const void* user, const HitQuery* queries, std::uint32_t count,
                        bool* accepted);
 
