@@ -10,7 +10,7 @@ from typing import Any
 from ... import core
 from ...scene_data import FloatArray
 from .compiler import Compiler, Outputs, node
-from .nodes_coordinates import vector_input
+from .nodes_coordinates import default_vector, vector_input
 
 OPS = {"PREETHAM": "sky_preetham", "HOSEK_WILKIE": "sky_hosek"}  # all else: sky_scattering
 SMALLEST_SUN = 0.0005  # radians; Cycles draws none that is smaller
@@ -50,7 +50,9 @@ def sky_texture(compiler: Compiler, node: Any) -> Outputs:
     """Camera rays see the disc. For all others the sky is without it, and `compiler.suns` has it:
     a map that is made of the sky would have to be enormous to hold a sun."""
     data = _read(node)
-    direction = vector_input(compiler, node)
+    # The input is not there for models that Blender gives none.
+    has_vector = "Vector" in node.inputs
+    direction = vector_input(compiler, node) if has_vector else default_vector(compiler, node)
     table = None if data.model in OPS else _table(_of_table(data))
     if data.sun_disc and compiler.ray.kind != "CAMERA":
         sun = SkySun(*core.load().sky_sun(data, table))
