@@ -24,6 +24,7 @@ import deforming
 import demo
 import features
 import instancing
+import materials
 import motion
 import settings
 import strands
@@ -39,6 +40,7 @@ SCENES: dict[str, Callable[[], None]] = {
     **strands.SCENES,
     **cameras.SCENES,
     **bounces.SCENES,
+    **materials.SCENES,
     **instancing.SCENES,
     **deforming.SCENES,
     **motion.SCENES,

@@ -1,5 +1,6 @@
 #include "render/material.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace komorebi {
@@ -37,6 +38,15 @@ bool is_plain(const Material& material, Vec3* albedo) {
     (*albedo)[static_cast<int>(c)] = value > 0.0f ? value : 0.0f;
   }
   return true;
+}
+
+float bound_of_emission(const Program& surface) {
+  float bound = 0.0f;
+  for (std::uint32_t i = SurfaceProgram::kEmission; i < SurfaceProgram::kEmission + 3; ++i) {
+    bound = std::max(bound,
+                     surface.constant(i) ? surface.constant_value(i) : surface.largest_constant());
+  }
+  return std::min(bound, 1e6f);
 }
 
 }  // namespace komorebi

@@ -47,6 +47,10 @@ struct Material {
 /// Whether a material is one matt colour all over, seen by all rays alike, and which.
 bool is_plain(const Material& material, Vec3* albedo);
 
+/// How bright a surface's emission may be, as far as can be told without running it: the value
+/// itself where it is the same all over, else the largest number that stands in the program.
+float bound_of_emission(const Program& surface);
+
 /// The share of rays that a transparency lets through. Colours are not told apart: a ray is blocked
 /// or it is not.
 inline float clear_share(const Vec3& transparency) {

@@ -101,6 +101,7 @@ void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, c
   put_values(context, hit, row);
   layout.put(row, Quantity::kNormal, normal);
   layout.put(row, Quantity::kDiffuseColor, shading.color);
+  layout.put(row, Quantity::kEmission, shading.emission);
   layout.put(row, Quantity::kDenoisingRoughness, 1.0f);  // of matt surfaces, as in Cycles
   layout.put(row, Quantity::kDenoisingDepth, hit.t);
   if (context.has_vector) {

@@ -200,6 +200,11 @@ void Scene::set_surfaces(std::vector<Material> surfaces, std::vector<float> inst
     throw std::invalid_argument(std::to_string(surfaces.size()) + " surfaces for " +
                                 std::to_string(tables_.materials.size()) + " materials");
   }
+  for (const Material& material : surfaces) {
+    if (material.camera.program) {
+      emission_max_ = std::max(emission_max_, bound_of_emission(*material.camera.program));
+    }
+  }
   tables_.surfaces = std::move(surfaces);
   tables_.instance_random = std::move(instance_random);
 }
@@ -217,7 +222,7 @@ StepsView Scene::steps() const {
 float Scene::max_radiance() const {
   const float light = environment_ ? static_cast<float>(strength_) * environment_->max_radiance()
                                    : max_abs(world_color_);
-  return std::max(light, world_program_max_);
+  return std::max({light, world_program_max_, emission_max_});
 }
 
 void Scene::place(const InstanceInput& input, std::span<const Mat4d> poses, ThreadPool& pool,

@@ -144,6 +144,7 @@ class Scene {
   double strength_ = 1.0;
   std::shared_ptr<const Program> world_program_;
   float world_program_max_ = 0.0f;
+  float emission_max_ = 0.0f;  // of surfaces, as far as is known
   Mat3d texture_from_world_{1.0};
   CameraDesc camera_desc_;
   SceneTables tables_;
