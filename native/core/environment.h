@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/light_texels.h"
 #include "core/sampler.h"
 #include "core/warp.h"
 
@@ -16,7 +17,10 @@ struct EnvironmentView {
   Vec3 constant{0.0f};                  ///< radiance where there is no map
   float strength = 1.0f;                ///< factor on the map's radiance; no part of the density
   std::uint32_t width = 0, height = 0;  ///< texels; 0: constant
-  const float* texels = nullptr;        ///< [height][width][3], row 0 at the bottom, ≥ 0
+  LightStorage storage = LightStorage::kFloat;
+  /// Texels ≥ 0, row 0 at the bottom: [height][width][3], or as `storage` says the words of them.
+  const float* texels = nullptr;
+  const std::uint32_t* words = nullptr;
   /// Cumulative probabilities from 0 to 2^31, in units of 2^-31. An entry of no weight spans
   /// exactly nothing, any other at least one unit.
   const std::uint32_t* row_cdf = nullptr;     ///< [height + 2]
@@ -62,7 +66,13 @@ struct EnvironmentPatch {
 };
 
 inline Vec3 environment_texel(const EnvironmentView& e, std::uint32_t column, std::uint32_t row) {
-  const float* p = e.texels + 3 * (static_cast<std::uint64_t>(row) * e.width + column);
+  const std::uint64_t i = static_cast<std::uint64_t>(row) * e.width + column;
+  if (e.storage == LightStorage::kRgbe) return rgbe_texel(e.words[i]);
+  if (e.storage == LightStorage::kHalf) {
+    return Vec3(packed_half(e.words, 3 * i), packed_half(e.words, 3 * i + 1),
+                packed_half(e.words, 3 * i + 2));
+  }
+  const float* p = e.texels + 3 * i;
   return Vec3(p[0], p[1], p[2]);
 }
 
@@ -86,17 +96,21 @@ inline EnvironmentPatch environment_patch(const EnvironmentView& e, std::uint32_
 struct PatchWeights {
   float low_left, low_right, high_left, high_right;
 };
-inline PatchWeights patch_weights(const EnvironmentView& e, const EnvironmentPatch& p) {
-  PatchWeights w{luminance(p.low_left), luminance(p.low_right), luminance(p.high_left),
-                 luminance(p.high_right)};
-  if (p.row == 0) {
+/// Of a patch with the luminances `w` at its corners.
+inline PatchWeights patch_weights(bool lowest_row, bool highest_row, PatchWeights w) {
+  if (lowest_row) {
     w.low_left = 0.5f * w.low_left + 0.5f * w.high_left;
     w.low_right = 0.5f * w.low_right + 0.5f * w.high_right;
-  } else if (p.row == e.height) {
+  } else if (highest_row) {
     w.high_left = 0.5f * w.low_left + 0.5f * w.high_left;
     w.high_right = 0.5f * w.low_right + 0.5f * w.high_right;
   }
   return w;
+}
+inline PatchWeights patch_weights(const EnvironmentView& e, const EnvironmentPatch& p) {
+  return patch_weights(p.row == 0, p.row == e.height,
+                       {luminance(p.low_left), luminance(p.low_right), luminance(p.high_left),
+                        luminance(p.high_right)});
 }
 
 inline float mix(float a, float b, float t) {

@@ -5,7 +5,7 @@
 #include <bit>
 
 #include "bvh/choose_builder.h"
-#include "io/image.h"
+#include "io/light_map.h"
 #include "python/arrays.h"
 #include "python/attribute_input.h"
 #include "python/bind.h"
@@ -84,9 +84,9 @@ std::shared_ptr<Environment> environment_from_file(const std::string& path,
                                                    const std::string& color_space) {
   const py::capsule owner =
       py::module_::import("komorebi_core._image").attr("read")(path, color_space);
-  auto& image = *owner.get_pointer<Image>();
+  auto& map = *owner.get_pointer<LightMap>();
   const py::gil_scoped_release release;
-  return std::make_shared<Environment>(path, image.width, image.height, std::move(image.pixels));
+  return std::make_shared<Environment>(std::move(map), *build_pool(0));
 }
 
 std::shared_ptr<Environment> environment_from_pixels(const std::string& name,

@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "io/image.h"
+#include "io/light_map.h"
 #include "io/texels.h"
 
 namespace komorebi::python {
@@ -14,17 +14,18 @@ namespace {
 
 namespace py = pybind11;
 
-/// The image that the caller's capsule owns, for environment_from_file to take.
+/// The map that the caller's capsule owns, for environment_from_file to take.
 py::capsule read(const std::string& path, const std::string& color_space) {
   if (color_space != "LINEAR" && color_space != "SRGB") {
     throw std::invalid_argument("color_space must be LINEAR or SRGB, not " + color_space);
   }
-  auto image = std::make_unique<Image>();
+  std::unique_ptr<LightMap> map;
   {
     const py::gil_scoped_release release;
-    *image = read_image(path, color_space == "SRGB" ? ColorSpace::kSrgb : ColorSpace::kLinear);
+    map = std::make_unique<LightMap>(
+        read_light_map(path, color_space == "SRGB" ? ColorSpace::kSrgb : ColorSpace::kLinear));
   }
-  return {image.release(), "komorebi.Image", [](void* it) { delete static_cast<Image*>(it); }};
+  return {map.release(), "komorebi.LightMap", [](void* it) { delete static_cast<LightMap*>(it); }};
 }
 
 py::capsule texels_capsule(Texels texels) {

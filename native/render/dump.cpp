@@ -302,7 +302,13 @@ void put_world(ArrayFile& file, const Scene& scene) {
   }
   const std::uint64_t width = environment->width(), height = environment->height();
   file.put_text("world/name", environment->name());
-  file.put<float>("world/texels", environment->texels(), {height, width, 3});
+  std::vector<float> texels;
+  texels.reserve(3 * environment->map().texel_count());
+  for (std::uint64_t i = 0; i < environment->map().texel_count(); ++i) {
+    const Vec3 value = environment->map().texel(i);
+    texels.insert(texels.end(), &value.x, &value.x + 3);
+  }
+  file.put<float>("world/texels", texels, {height, width, 3});
   file.put_value<double>("world/strength", scene.world_strength());
   file.put<double>("world/texture_from_world",
                    span_of(glm::value_ptr(scene.texture_from_world()), 9), {3, 3});

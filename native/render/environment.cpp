@@ -7,89 +7,108 @@
 #include "render/quantized_cdf.h"
 
 namespace komorebi {
+namespace {
+
+LightMap map_of(std::string name, std::uint32_t width, std::uint32_t height,
+                std::vector<float> texels) {
+  LightMap map(std::move(name), width, height);
+  const std::uint64_t count = map.texel_count();
+  if (texels.size() != 3 * count) {
+    throw std::invalid_argument("environment \"" + map.name() + "\": " + std::to_string(3 * count) +
+                                " values expected, " + std::to_string(texels.size()) + " given");
+  }
+  map.put(0, height, texels.data());
+  return map;
+}
+
+/// The luminance of a row of texels.
+void row_luminance(const EnvironmentView& e, std::uint32_t row, float* out) {
+  for (std::uint32_t c = 0; c < e.width; ++c) {
+    out[c] = luminance(detail::environment_texel(e, c, row));
+  }
+}
+
+}  // namespace
+
+Environment::Environment(LightMap map, ThreadPool& pool) : map_(std::move(map)) {
+  build_tables(pool);
+}
+
 Environment::Environment(std::string name, std::uint32_t width, std::uint32_t height,
                          std::vector<float> texels)
-    : name_(std::move(name)), width_(width), height_(height), texels_(std::move(texels)) {
-  const std::uint64_t count = std::uint64_t{width} * height;
-  if (count == 0 || width > 1u << 20 || height > 1u << 20) {
-    throw std::invalid_argument("environment \"" + name_ + "\": cannot be " +
-                                std::to_string(width) + " × " + std::to_string(height) + " pixels");
-  }
-  if (texels_.size() != 3 * count) {
-    throw std::invalid_argument("environment \"" + name_ + "\": " + std::to_string(3 * count) +
-                                " values expected, " + std::to_string(texels_.size()) + " given");
-  }
-  clean_texels();
-  build_tables();
+    : map_(map_of(std::move(name), width, height, std::move(texels))) {
+  ThreadPool pool(1);
+  build_tables(pool);
 }
 
-void Environment::clean_texels() {
-  for (std::size_t i = 0; i < texels_.size(); i += 3) {
-    float* p = &texels_[i];
-    if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]))) {
-      p[0] = p[1] = p[2] = 0.0f;
-      ++nonfinite_texels_;
-    } else if (p[0] < 0.0f || p[1] < 0.0f || p[2] < 0.0f) {
-      for (int c = 0; c < 3; ++c) p[c] = p[c] < 0.0f ? 0.0f : p[c];
-      ++negative_texels_;
-    }
-    for (int c = 0; c < 3; ++c) max_radiance_ = p[c] > max_radiance_ ? p[c] : max_radiance_;
-  }
+EnvironmentView Environment::texel_view() const {
+  EnvironmentView e;
+  e.width = width();
+  e.height = height();
+  e.storage = map_.storage();
+  e.texels = map_.floats();
+  e.words = map_.words();
+  return e;
 }
 
-void Environment::build_tables() {
-  const std::uint32_t rows = height_ + 1;
+void Environment::build_tables(ThreadPool& pool) {
+  const std::uint32_t rows = height() + 1, columns = width();
   row_z_.resize(rows + 1);
   row_z_[0] = -1.0;
   row_z_[rows] = 1.0;
   for (std::uint32_t r = 1; r < rows; ++r) {  // edges at the texel rows' centres
-    const double v = (r - 0.5) / height_;
+    const double v = (r - 0.5) / height();
     row_z_[r] = sin_cos_turns(0.5 * v - 0.25).sin;
   }
 
-  EnvironmentView e;
-  e.width = width_;
-  e.height = height_;
-  e.texels = texels_.data();
-  column_cdf_.resize(std::size_t{rows} * (width_ + 1));
+  const EnvironmentView e = texel_view();
+  column_cdf_.resize(std::size_t{rows} * (columns + 1));
   row_cdf_.resize(rows + 1);
-  std::vector<double> column_weight(width_), row_weight(rows);
-  for (std::uint32_t r = 0; r < rows; ++r) {
-    for (std::uint32_t c = 0; c < width_; ++c) {
-      const auto w = detail::patch_weights(e, detail::environment_patch(e, r, c));
-      column_weight[c] =
-          double{w.low_left} + double{w.low_right} + double{w.high_left} + double{w.high_right};
+  std::vector<double> row_weight(rows);
+  pool.for_each_chunk(rows, 16, [&](std::size_t first, std::size_t last) {
+    std::vector<double> weight(columns);
+    std::vector<float> low(columns), high(columns);
+    row_luminance(e, first == 0 ? height() - 1 : static_cast<std::uint32_t>(first - 1),
+                  high.data());
+    for (std::size_t r = first; r < last; ++r) {
+      std::swap(low, high);
+      row_luminance(e, r == height() ? 0 : static_cast<std::uint32_t>(r), high.data());
+      for (std::uint32_t c = 0; c < columns; ++c) {
+        const std::uint32_t right = c + 1 == columns ? 0 : c + 1;
+        const auto w = detail::patch_weights(r == 0, r == height(),
+                                             {low[c], low[right], high[c], high[right]});
+        weight[c] =
+            double{w.low_left} + double{w.low_right} + double{w.high_left} + double{w.high_right};
+      }
+      row_weight[r] =
+          quantize_cdf(weight, &column_cdf_[r * (columns + 1)]) * (row_z_[r + 1] - row_z_[r]);
     }
-    row_weight[r] = quantize_cdf(column_weight, &column_cdf_[std::size_t{r} * (width_ + 1)]) *
-                    (row_z_[r + 1] - row_z_[r]);
-  }
+  });
   if (!(quantize_cdf(row_weight, row_cdf_.data()) > 0.0)) {
     row_cdf_.clear();
-    column_cdf_.clear();
+    column_cdf_ = {};
     row_z_.clear();
   }
 }
 
 EnvironmentView Environment::view(double strength, const Mat3d& texture_from_world) const {
   if (!(strength >= 0.0 && std::isfinite(strength))) {
-    throw std::invalid_argument("environment \"" + name_ + "\": the strength must not be negative");
+    throw std::invalid_argument("environment \"" + name() +
+                                "\": the strength must not be negative");
   }
   const Mat3d product = glm::transpose(texture_from_world) * texture_from_world;
   for (int c = 0; c < 3; ++c) {
     for (int r = 0; r < 3; ++r) {
       if (!(std::abs(product[c][r] - (c == r ? 1.0 : 0.0)) < 1e-4)) {
-        throw std::invalid_argument("environment \"" + name_ +
+        throw std::invalid_argument("environment \"" + name() +
                                     "\": its mapping must be a rotation");
       }
     }
   }
   if (black()) return constant_environment(Vec3(0.0f));
-  EnvironmentView view;
+  EnvironmentView view = texel_view();
   view.texture_from_world = Mat3(texture_from_world);
   view.strength = static_cast<float>(strength);
-  view.width = width_;
-  view.height = height_;
-  view.texels = texels_.data();
   view.row_cdf = row_cdf_.data();
   view.column_cdf = column_cdf_.data();
   view.row_z = row_z_.data();
@@ -105,21 +124,23 @@ const ProductTable& Environment::product_table() const {
 double Environment::mean_flux() const {
   std::call_once(flux_once_, [this] {
     const auto z_at = [&](std::uint32_t row) {  // the lower edge of a row of texels
-      return sin_cos_turns(0.5 * row / height_ - 0.25).sin;
+      return sin_cos_turns(0.5 * row / height() - 0.25).sin;
     };
-    const float* texel = texels_.data();
-    for (std::uint32_t r = 0; r < height_; ++r) {
+    std::uint64_t texel = 0;
+    for (std::uint32_t r = 0; r < height(); ++r) {
       double sum = 0.0;
-      for (std::uint32_t i = 0; i < 3 * width_; ++i) sum += double{*texel++};
-      mean_flux_ += sum / 3.0 * (2.0 * kPi / width_) * (z_at(r + 1) - z_at(r));
+      for (std::uint32_t i = 0; i < width(); ++i) {
+        const Vec3 value = map_.texel(texel++);
+        for (int c = 0; c < 3; ++c) sum += double{value[c]};
+      }
+      mean_flux_ += sum / 3.0 * (2.0 * kPi / width()) * (z_at(r + 1) - z_at(r));
     }
   });
   return mean_flux_;
 }
 
 std::size_t Environment::byte_count() const {
-  return sizeof(float) * texels_.size() +
-         sizeof(std::uint32_t) * (row_cdf_.size() + column_cdf_.size()) +
+  return map_.byte_count() + sizeof(std::uint32_t) * (row_cdf_.size() + column_cdf_.size()) +
          sizeof(double) * row_z_.size();
 }
 

@@ -6,6 +6,9 @@
 #include <vector>
 
 #include "core/environment.h"
+#include "io/light_map.h"
+#include "parallel/array.h"
+#include "parallel/thread_pool.h"
 #include "render/product_table.h"
 
 namespace komorebi {
@@ -14,9 +17,10 @@ namespace komorebi {
 /// belong to the texels alone: strength and rotation are set per view.
 class Environment {
  public:
-  /// `texels` is [height][width][3], linear Rec. 709 radiance, row 0 at the bottom; moved in.
-  /// A texel with a non-finite channel becomes black, as in Cycles; a negative channel becomes 0;
-  /// both are counted. std::invalid_argument, naming `name`, when sizes do not fit.
+  /// The tables are worked out on the pool, equal for any number of threads.
+  Environment(LightMap map, ThreadPool& pool);
+  /// `texels` is [height][width][3], linear Rec. 709 radiance, row 0 at the bottom, as
+  /// LightMap::put takes them. std::invalid_argument, naming `name`, when sizes do not fit.
   Environment(std::string name, std::uint32_t width, std::uint32_t height,
               std::vector<float> texels);
 
@@ -32,30 +36,27 @@ class Environment {
   /// normalises its importance map by. Worked out at the first call. Safe from any thread.
   double mean_flux() const;
 
-  const std::string& name() const { return name_; }
-  std::uint32_t width() const { return width_; }
-  std::uint32_t height() const { return height_; }
-  std::uint64_t nonfinite_texels() const { return nonfinite_texels_; }
-  std::uint64_t negative_texels() const { return negative_texels_; }
-  const std::vector<float>& texels() const { return texels_; }
-  float max_radiance() const { return max_radiance_; }  ///< of any channel of any texel
+  const std::string& name() const { return map_.name(); }
+  std::uint32_t width() const { return map_.width(); }
+  std::uint32_t height() const { return map_.height(); }
+  std::uint64_t nonfinite_texels() const { return map_.nonfinite_texels(); }
+  std::uint64_t negative_texels() const { return map_.negative_texels(); }
+  const LightMap& map() const { return map_; }
+  float max_radiance() const { return map_.max_radiance(); }  ///< of any channel of any texel
   std::size_t byte_count() const;
   bool black() const { return row_cdf_.empty(); }  ///< no texel shines: no tables, constant 0
 
  private:
-  void clean_texels();
-  void build_tables();
+  EnvironmentView texel_view() const;
+  void build_tables(ThreadPool& pool);
 
-  std::string name_;
-  std::uint32_t width_, height_;
-  std::vector<float> texels_;
-  std::vector<std::uint32_t> row_cdf_, column_cdf_;
+  LightMap map_;
+  std::vector<std::uint32_t> row_cdf_;
+  Array<std::uint32_t> column_cdf_;
   std::vector<double> row_z_;
   mutable std::once_flag product_once_, flux_once_;
   mutable std::unique_ptr<const ProductTable> product_table_;
   mutable double mean_flux_ = 0.0;
-  float max_radiance_ = 0.0f;
-  std::uint64_t nonfinite_texels_ = 0, negative_texels_ = 0;
 };
 
 /// The same radiance from everywhere; the caller has multiplied the strength in.

@@ -93,11 +93,37 @@ struct EnvironmentSampleLanes {
   Float pdf;
 };
 
+/// rgbe_texel
+HWY_INLINE Vec3Lanes rgbe_lanes(Uint word) {
+  const Uint exponent = hn::Sub(hn::ShiftRight<24>(word), u32(9));
+  const Float scale = hn::BitCast(TagF(), hn::ShiftLeft<23>(exponent));
+  const Uint byte = u32(255);
+  return {to_float(hn::And(word, byte)) * scale,
+          to_float(hn::And(hn::ShiftRight<8>(word), byte)) * scale,
+          to_float(hn::And(hn::ShiftRight<16>(word), byte)) * scale};
+}
+
+/// packed_half of a number that is finite and not negative: exact, denormal ones too.
+HWY_INLINE Float gather_half(const std::uint32_t* words, Uint i) {
+  const Uint word = gather(words, hn::ShiftRight<1>(i));
+  const auto odd = hn::Eq(hn::And(i, u32(1)), u32(1));
+  const Uint half = hn::And(hn::IfThenElse(odd, hn::ShiftRight<16>(word), word), u32(0xffff));
+  return hn::BitCast(TagF(), hn::ShiftLeft<13>(half)) * f32(5.192296858534828e33f);  // 2^112
+}
+
 struct TexelLanes {
   HWY_INLINE TexelLanes(const EnvironmentView& e, Uint row, Uint column) {
-    const Uint i = hn::Mul(u32(3), hn::Add(hn::Mul(row, u32(e.width)), column));
-    rgb = {gather(e.texels, i), gather(e.texels, hn::Add(i, u32(1))),
-           gather(e.texels, hn::Add(i, u32(2)))};
+    const Uint texel = hn::Add(hn::Mul(row, u32(e.width)), column);
+    if (e.storage == LightStorage::kRgbe) {
+      rgb = rgbe_lanes(gather(e.words, texel));
+    } else {
+      const Uint i = hn::Mul(u32(3), texel);
+      const Uint green = hn::Add(i, u32(1)), blue = hn::Add(i, u32(2));
+      rgb = e.storage == LightStorage::kHalf
+                ? Vec3Lanes{gather_half(e.words, i), gather_half(e.words, green),
+                            gather_half(e.words, blue)}
+                : Vec3Lanes{gather(e.texels, i), gather(e.texels, green), gather(e.texels, blue)};
+    }
     luminance = (f32(0.2126f) * rgb.x + f32(0.7152f) * rgb.y) + f32(0.0722f) * rgb.z;
   }
   Vec3Lanes rgb;
@@ -214,7 +240,16 @@ class ProductSteps {
       const TexelRows rows(e_, d.up.entry);
       for (const Uint& row : {rows.low, rows.high}) {
         const Uint texel = hn::Add(hn::Mul(row, u32(e_.width)), d.across.entry);
-        fetch_soon(e_.texels, hn::Mul(u32(3), texel));
+        switch (e_.storage) {
+          case LightStorage::kRgbe:
+            fetch_soon(e_.words, texel);
+            break;
+          case LightStorage::kHalf:
+            fetch_soon(e_.words, hn::ShiftRight<1>(hn::Mul(u32(3), texel)));
+            break;
+          default:
+            fetch_soon(e_.texels, hn::Mul(u32(3), texel));
+        }
       }
     }
   }
