@@ -18,7 +18,7 @@ FLAT_RECTS = VERSION >= (4, 1, 0)  # rect.foreach_set wants one dimension instea
 GENERIC_ATTRIBUTES = VERSION >= (3, 6, 0)  # position, .corner_vert, sharp_face are attributes
 LONG_PASS_NAMES = VERSION >= (5, 0, 0)  # "Material Index", not "IndexMA"
 CORNER_NORMALS = VERSION >= (4, 1, 0)  # mesh.corner_normals, no auto smooth
-NOISE_REPEATS = VERSION >= (4, 1, 0)  # every 100,000 cells, since floats tell few places apart there
+NOISE_REPEATS = VERSION >= (4, 1, 0)  # every 100,000 cells, where floats lose places in a cell
 VORONOI_PCG = VERSION >= (5, 0, 0)  # hashes cells of two dimensions and more
 
 

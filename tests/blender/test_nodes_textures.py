@@ -53,6 +53,7 @@ def test_white_noise():
     stage = Stage()
     # Cells in which it is the same, so that the last bit of a coordinate does not matter.
     for dimensions in DIMENSIONS:
+
         def build(s, dimensions=dimensions, output="Color"):
             node = s.new("TexWhiteNoise", noise_dimensions=dimensions)
             for socket in node.inputs:
@@ -83,6 +84,7 @@ def test_noise_inputs_that_vary():
     stage = Stage()
     for name, scale, offset in (("Detail", 4.0, 3.0), ("Roughness", 0.6, 0.5), ("Scale", 4.0, 3.0),
                                 ("Distortion", 2.0, 0.0), ("Lacunarity", 1.0, 2.0)):  # fmt: skip
+
         def build(s, name=name, scale=scale, offset=offset):
             given = {"Detail": 2.5, name: s.number(2, scale, offset)}
             return texture(s, "TexNoise", "Fac", given=given)
@@ -118,6 +120,7 @@ def test_noise_far_away():
     """Where floats do not tell the places in a cell apart, releases differ."""
     stage = Stage()
     for power in (13, 17, 21, 32):  # of two, so that nothing is rounded
+
         def build(s, power=power):
             node = s.new("TexNoise")
             node.inputs["Scale"].default_value = 1.0
@@ -180,6 +183,7 @@ def test_voronoi_inputs_that_vary():
     for name, scale, offset in (("Smoothness", 1.0, 0.3), ("Randomness", 1.2, 0.5),
                                 ("Scale", 2.0, 0.0), ("Exponent", 1.0, 1.5),
                                 ("Detail", 2.0, 1.5), ("Roughness", 0.7, 0.5)):  # fmt: skip
+
         def build(s, name=name, scale=scale, offset=offset):
             given = {name: s.number(2, scale, offset)}
             if name == "Roughness":

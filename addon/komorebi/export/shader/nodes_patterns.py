@@ -62,9 +62,7 @@ def gabor(compiler: Compiler, node: Any) -> Outputs:
     place = b.multiply(parameter(compiler, node, "Scale"), texture_vector(compiler, node))
     for name in ("Frequency", "Anisotropy", "Orientation 2D", "Orientation 3D"):
         place += parameter(compiler, node, name)
-    value, phase, intensity = b.op(
-        "gabor", place, 3, numbers=(float(node.gabor_type == "3D"),)
-    )
+    value, phase, intensity = b.op("gabor", place, 3, numbers=(float(node.gabor_type == "3D"),))
     return {"Value": (value,), "Phase": (phase,), "Intensity": (intensity,)}
 
 
