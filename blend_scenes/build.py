@@ -17,6 +17,7 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
+import bounces
 import cameras
 import closed_forms
 import deforming
@@ -37,6 +38,7 @@ SCENES: dict[str, Callable[[], None]] = {
     **visibility.SCENES,
     **strands.SCENES,
     **cameras.SCENES,
+    **bounces.SCENES,
     **instancing.SCENES,
     **deforming.SCENES,
     **motion.SCENES,

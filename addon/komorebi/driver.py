@@ -8,7 +8,17 @@ from typing import Any, TypeVar
 
 import bpy
 
-from . import background, core, dump, jobs, memory, metadata, native_scene, reporting
+from . import (
+    background,
+    core,
+    dump,
+    jobs,
+    memory,
+    metadata,
+    native_scene,
+    native_surfaces,
+    reporting,
+)
 from .denoise import library as oidn
 from .denoise import run as denoise
 from .errors import RenderCancelled, RenderError
@@ -119,6 +129,8 @@ def render_frame(engine: Any, _depsgraph: Any, frame: Frame) -> None:
         lambda: native_scene.load(native, frame.scene, _expected_rays(frame), threads, cancel),
     )  # fmt: skip
     _warn_environment(engine, parts.environment)
+    for sentence in [*parts.warnings, *(s for mesh in parts.meshes for s in mesh.warnings)]:
+        reporting.warn(engine, sentence)
     for view in frame.views:
         _render_view(engine, frame, parts, view)
         if engine.test_break():
@@ -131,7 +143,8 @@ def _expected_rays(frame: Frame) -> float:
     settings = frame.settings
     light = settings["light_samples"] or core.load().AUTOMATIC_LIGHT_SAMPLES
     pixels = (x_max - x_min) * (y_max - y_min) * len(frame.views)
-    return float(pixels) * settings["samples"] * (1 + light)
+    per_bounce = 2  # the one that finds the next surface, and its light ray
+    return float(pixels) * settings["samples"] * (1 + light + per_bounce * settings["bounces"])
 
 
 def _native_work(engine: Any, cancel: Any, work: Callable[[], T]) -> T:
@@ -196,8 +209,7 @@ def _denoised(engine: Any, session: Any, frame: Frame) -> FloatArray | None:
     """The denoised Combined; None when the user stops it, and keeps the noisy picture."""
     x_min, y_min, x_max, y_max = frame.region
     width, height, settings = x_max - x_min, y_max - y_min, frame.settings
-    clay = settings["clay_color"] if settings["method"] == "WORLD_LIGHT" else (1.0, 1.0, 1.0)
-    albedo, normal = denoise.guides(session, width, height, clay)
+    albedo, normal = denoise.guides(session, width, height)
     picture = session.read("Combined", 0, 0, width, height)
     kill = denoise.Kill()
     try:
@@ -213,7 +225,9 @@ def _denoised(engine: Any, session: Any, frame: Frame) -> FloatArray | None:
 
 def _said(data: SceneData, parts: native_scene.Parts) -> str:
     trees = "SAH trees" if parts.builder == "SAH" else "Linear trees"
-    return " | ".join(filter(None, (trees, _ignored(data))))
+    simpler = native_surfaces.simplified(data.materials)
+    simplified = f"Simplified: {simpler}" if simpler else ""
+    return " | ".join(filter(None, (trees, _ignored(data), simplified)))
 
 
 def _ignored(scene: SceneData) -> str:

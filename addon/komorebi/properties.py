@@ -15,7 +15,15 @@ from .callbacks import update_render_passes
 
 METHODS = (
     ("AMBIENT_OCCLUSION", "Ambient Occlusion", "How much of a white sky each point sees"),
-    ("WORLD_LIGHT", "World Light", "Clay-coloured surfaces in the light of the world"),
+    ("WORLD_LIGHT", "World Light", "Surfaces in the light of the world"),
+)
+SURFACES = (
+    ("MATERIAL", "Material", "Every surface as its material says"),
+    ("CLAY", "Clay", "One colour for all, to see nothing but shape and light"),
+)
+CLAY_GLASS = (
+    ("SKIP", "Skip", "Glass and what else is clear is left out, so that one sees what is behind"),
+    ("CLAY", "Clay", "Glass is clay like everything else"),
 )
 AO_SAMPLINGS = (
     ("COSINE", "Cosine", "Rays by the cosine of their angle to the normal: the least noise"),
@@ -74,7 +82,8 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
     )  # fmt: skip
     light_samples: IntProperty(
         name="Light Samples",
-        description="Light rays for each camera sample; 0 is automatic: 8, or 4 where better",
+        description="Light rays for each camera sample; 0 is automatic: 8, or 4 where "
+        "better, with bounces down to 1",
         default=0, min=0, max=1024,
     )  # fmt: skip
     sample_offset: IntProperty(
@@ -104,9 +113,45 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         name="Sampling", description="How rays are spread over the hemisphere",
         items=AO_SAMPLINGS, default="COSINE",
     )  # fmt: skip
+    surface: EnumProperty(
+        name="Surface", description="What surfaces look like", items=SURFACES, default="MATERIAL"
+    )
+    clay_glass: EnumProperty(
+        name="Glass", description="What becomes of glass under clay",
+        items=CLAY_GLASS, default="SKIP",
+    )  # fmt: skip
+    clay_bump: BoolProperty(
+        name="Bump and Normal Maps", description="Clay keeps the relief that materials draw",
+        default=False,
+    )  # fmt: skip
     clay_color: FloatVectorProperty(
-        name="Surface Color", description="Colour of every surface",
+        name="Clay Color", description="Colour of every surface under clay",
         subtype="COLOR", size=3, default=(0.8, 0.8, 0.8), min=0.0, max=1.0,
+    )  # fmt: skip
+    bounces: IntProperty(
+        name="Bounces",
+        description="How often light goes from surface to surface under World Light: 0 is what "
+        "comes straight from the world; each more brightens what faces other surfaces",
+        default=2, min=0, max=1024, soft_max=16,
+    )  # fmt: skip
+    # Not Blender's ao_bounces, which are those of Fast GI.
+    ao_indirect_bounces: IntProperty(
+        name="Bounces",
+        description="How often the white sky's light goes from surface to surface before it comes "
+        "to what is seen: 0 is plain ambient occlusion",
+        default=0, min=0, max=1024, soft_max=16,
+    )  # fmt: skip
+    sample_clamp_direct: FloatProperty(
+        name="Direct Light",
+        description="Most that a sample may bring without a bounce, to the picture too: takes away "
+        "bright specks, and light with them; 0 is no limit",
+        default=0.0, min=0.0, max=1e8,
+    )  # fmt: skip
+    sample_clamp_indirect: FloatProperty(
+        name="Indirect Light",
+        description="Most that a sample may bring after each bounce: takes away bright specks, and "
+        "light with them; 0 is no limit",
+        default=10.0, min=0.0, max=1e8,
     )  # fmt: skip
     environment_sampling: EnumProperty(
         name="Environment Sampling", description="How rays towards the world are chosen",
@@ -116,6 +161,18 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         name="Filter", description="How samples around a pixel's centre are weighted",
         items=PIXEL_FILTERS, default="BLACKMAN_HARRIS",
     )  # fmt: skip
+    world_resolution: IntProperty(
+        name="World Map Resolution",
+        description="Columns of pixels of the map that lights the scene where the world is more "
+        "than one picture; 0 is automatic: 1024, or as many as its largest picture has",
+        default=0, min=0, max=16384,
+    )  # fmt: skip
+    texture_limit: IntProperty(
+        name="Texture Limit",
+        description="Memory in MiB that pictures on surfaces may take together; when there are "
+        "more, the largest are rendered at half their width, and a warning says so",
+        default=1024, min=16, soft_max=65536,
+    )  # fmt: skip
     filter_width: FloatProperty(
         name="Width", description="Width of the pixel filter",
         default=1.5, min=0.01, max=10.0, subtype="PIXEL",
@@ -124,6 +181,15 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         name="Progressive",
         description="Refine the whole frame step by step; off: finish one tile after the other",
         default=True,
+    )  # fmt: skip
+
+
+class KomorebiMaterialSettings(bpy.types.PropertyGroup):
+    """Settings of a material for the Komorebi render engine"""
+
+    exclude_from_clay: BoolProperty(
+        name="Exclude from Clay", description="Keeps its own look where all else is clay",
+        default=False,
     )  # fmt: skip
 
 
@@ -166,8 +232,12 @@ class KomorebiViewLayerSettings(bpy.types.PropertyGroup):
 
 def register() -> None:
     bpy.utils.register_class(KomorebiSceneSettings)
+    bpy.utils.register_class(KomorebiMaterialSettings)
     bpy.utils.register_class(KomorebiViewLayerSettings)
     bpy.types.Scene.komorebi = PointerProperty(name="Komorebi Settings", type=KomorebiSceneSettings)
+    bpy.types.Material.komorebi = PointerProperty(
+        name="Komorebi Material Settings", type=KomorebiMaterialSettings
+    )
     bpy.types.ViewLayer.komorebi = PointerProperty(
         name="Komorebi View Layer Settings", type=KomorebiViewLayerSettings
     )
@@ -175,6 +245,8 @@ def register() -> None:
 
 def unregister() -> None:
     del bpy.types.ViewLayer.komorebi
+    del bpy.types.Material.komorebi
     del bpy.types.Scene.komorebi
     bpy.utils.unregister_class(KomorebiViewLayerSettings)
+    bpy.utils.unregister_class(KomorebiMaterialSettings)
     bpy.utils.unregister_class(KomorebiSceneSettings)

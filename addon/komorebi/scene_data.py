@@ -27,6 +27,14 @@ class MeshKey:
     shading: bytes
 
 
+@dataclass(frozen=True, slots=True)
+class Attribute:
+    """A named array on a shape, with a row an element of its domain."""
+
+    domain: str  # POINT, CORNER, FACE or CURVE
+    values: FloatArray  # [elements, 1 to 4]; colours are linear
+
+
 @dataclass(slots=True)
 class MeshData:
     """One mesh in its own space; face f has corners face_offsets[f] to face_offsets[f + 1] − 1."""
@@ -48,6 +56,7 @@ class MeshData:
     motion_normals: FloatArray | None = None  # [2k, corners or vertices, 3]; None: always the same
     # For the pass Vector alone: positions one frame before and after, of a mesh that stands still.
     step_positions: FloatArray | None = None  # [2, vertices, 3]
+    attributes: dict[str, Attribute] = field(default_factory=dict)
     key: MeshKey | None = None
 
     @property
@@ -72,6 +81,7 @@ class CurveData:
     motion_positions: FloatArray | None = None  # [2k, keys, 3]
     motion_radii: FloatArray | None = None  # [2k, keys]; None: always the same
     step_positions: FloatArray | None = None  # [2, keys, 3]
+    attributes: dict[str, Attribute] = field(default_factory=dict)
     key: MeshKey | None = None
 
     @property
@@ -90,6 +100,7 @@ class PointData:
     motion_positions: FloatArray | None = None  # [2k, points, 3]
     motion_radii: FloatArray | None = None  # [2k, points]; None: always the same
     step_positions: FloatArray | None = None  # [2, points, 3]
+    attributes: dict[str, Attribute] = field(default_factory=dict)
     key: MeshKey | None = None
 
     @property
@@ -124,6 +135,7 @@ class InstanceData:
     mask: UIntArray | None = None  # [count], bits RAY_*; None: seen by every ray
     flags: UIntArray | None = None  # [count], bits FLAG_*; None: none
     material_slots: UIntArray | None = None  # [count], index into Materials.slots; None: all 0
+    random: FloatArray | None = None  # [count], from 0 to 1; None: no surface asks for it
     # At an odd number of even times from the opening of the shutter to the closing; `matrices` are
     # the middle ones. None: all of them stand still.
     motion: DoubleArray | None = None  # [count, 2k + 1, 4, 4]
@@ -132,7 +144,7 @@ class InstanceData:
         """Some of the instances, by index or by a mask [count]."""
         chosen = {
             name: None if array is None else array[rows]
-            for name in ("mask", "flags", "material_slots", "motion")
+            for name in ("mask", "flags", "material_slots", "random", "motion")
             for array in (getattr(self, name),)
         }
         return replace(
@@ -207,6 +219,54 @@ class ProgramData:
         return repr((said, self.outputs)).encode()
 
 
+@dataclass(frozen=True, slots=True)
+class Lobe:
+    """A part of a surface's light: matt reflection, or passing through to the other side."""
+
+    transmits: bool
+    has_normal: bool  # of its own, three outputs after its weight
+
+
+@dataclass(slots=True)
+class SurfacePrograms:
+    """A surface for one kind of ray. Outputs: emission, transparency (weight of what goes straight
+    through), holdout (1), then of each lobe its weight and, if it has one, its normal."""
+
+    program: ProgramData
+    lobes: tuple[Lobe, ...]
+
+
+@dataclass(slots=True)
+class SurfaceData:
+    """A material's surface."""
+
+    camera: SurfacePrograms
+    bounce: SurfacePrograms | None = None  # for rays that bounce light; None: the same
+    shadow: ProgramData | None = None  # transparency to rays that look for light; None: opaque
+    notes: set[str] = field(default_factory=set)  # what is rendered as something simpler
+
+    def programs(self) -> list[ProgramData]:
+        """All that it is made of."""
+        surfaces = [self.camera, *([self.bounce] if self.bounce else [])]
+        return [s.program for s in surfaces] + ([self.shadow] if self.shadow else [])
+
+
+@dataclass(slots=True)
+class TextureImage:
+    """A picture for an Image Texture: a file, a packed file's bytes, pixels, or tiles (UDIM)."""
+
+    name: str
+    key: bytes  # the same for pictures that look the same
+    color_space: str = "LINEAR"  # or SRGB, NON_COLOR
+    alpha_mode: str = "STRAIGHT"  # or PREMUL, CHANNEL_PACKED, NONE
+    matrix: DoubleArray | None = None  # [3, 3] linear Rec. 709 from other primaries
+    path: str | None = None
+    packed: bytes | None = None
+    # [height, width, 4] uint8, straight, or [height, width, 1 or 4] float32, weighed by alpha
+    pixels: Any = None
+    tiles: dict[int, TextureImage] | None = None  # by UDIM number
+
+
 @dataclass(slots=True)
 class EnvironmentImage:
     """An equirectangular picture: either a file for the core to read, or pixels."""
@@ -243,6 +303,7 @@ class ObjectData:
     # the cosine's end is cut off, 0 to 1.
     terminator_geometry_offset: float = 0.0
     terminator_shading_offset: float = 0.0
+    color: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0)  # of the viewport display, for Object Info
 
 
 @dataclass(slots=True)
@@ -252,6 +313,7 @@ class MaterialData:
     name: str
     pass_index: int
     values: list[float] = field(default_factory=list)  # passes.value_columns
+    surface: SurfaceData | None = None
 
 
 @dataclass(slots=True)
@@ -272,6 +334,7 @@ class SceneData:
     instances: list[InstanceData] = field(default_factory=list)
     objects: list[ObjectData] = field(default_factory=list)
     materials: Materials = field(default_factory=Materials)
+    texture_limit: int = 1 << 30  # bytes of all textures together
     ignored: dict[str, int] = field(default_factory=dict)  # kind of object → how many
 
     @property

@@ -12,18 +12,20 @@ enum Dimension : std::uint32_t {
   kDimensionTime = 4,    ///< when in the shutter; 5–7 reserved
   kDimensionVertex = 8,  ///< from here a block for each vertex of the path
 };
-inline constexpr std::uint32_t kDimensionsPerVertex = 8;
+inline constexpr std::uint32_t kDimensionsPerVertex = 16;
 
 /// Within a vertex's block.
 enum VertexDimension : std::uint32_t {
   kVertexLightDirection = 0,  ///< 0–1: direction of a light ray
-  kVertexLightChoice = 2,     ///< which strategy or light; 3 reserved
+  kVertexLightChoice = 2,     ///< which strategy or light
+  kVertexRoulette = 3,        ///< whether the path goes on from here
   kVertexScatter = 4,         ///< 4–5: direction of the next bounce
   kVertexAmbient = 6,         ///< 6–7: direction of a ray for ambient occlusion beside light rays
+  kVertexLobe = 8,            ///< which part of a surface's light; 9–15 reserved
 };
 
 /// The dimension of use `use` at path vertex `vertex` (0: where the camera ray hits). Light ray j
-/// of n of camera sample i takes index i·n + j in these dimensions.
+/// of n of camera sample i takes index i·n + j in these dimensions; where a path goes on, i.
 inline std::uint32_t vertex_dimension(std::uint32_t vertex, VertexDimension use) {
   return kDimensionVertex + vertex * kDimensionsPerVertex + use;
 }
@@ -62,6 +64,7 @@ struct Bits2 {
 struct Sampler {
   std::uint32_t pixel_seed;
 
+  explicit Sampler(std::uint32_t of_pixel) : pixel_seed(of_pixel) {}
   Sampler(std::uint32_t seed, std::uint32_t x, std::uint32_t y)
       : pixel_seed(hash_combine(hash_combine(hash_bits(seed), x), y)) {}
 

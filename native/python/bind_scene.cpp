@@ -7,6 +7,7 @@
 #include "bvh/choose_builder.h"
 #include "io/image.h"
 #include "python/arrays.h"
+#include "python/attribute_input.h"
 #include "python/bind.h"
 #include "python/camera_input.h"
 #include "render/content_hash.h"
@@ -25,8 +26,8 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
                                 unsigned threads, const std::shared_ptr<Cancel>& cancel,
                                 const std::shared_ptr<Mesh>& same_geometry,
                                 const py::object& motion_positions,
-                                const py::object& motion_normals,
-                                const py::object& step_positions) {
+                                const py::object& motion_normals, const py::object& step_positions,
+                                const py::object& attributes) {
   const std::string mesh = "mesh \"" + name + "\": ";
   MeshInput input;
   input.name = name;
@@ -50,6 +51,7 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
       optional_view<float>(motion_normals, mesh + "motion_normals", {-1, normals, 3});
   input.step_positions =
       optional_view<float>(step_positions, mesh + "step_positions", {2, vertices, 3});
+  input.attributes = attributes_of(attributes, mesh);
   const Builder kind = builder_from_name(builder);
   const py::gil_scoped_release release;
   // Python has no const; nothing that is bound below changes a mesh.
@@ -172,7 +174,8 @@ void set_world_environment(Scene& scene, std::shared_ptr<const Environment> envi
 void set_tables(Scene& scene, const py::object& object_pass_index, const py::object& object_mattes,
                 const py::object& object_terminators, const py::object& material_pass_index,
                 const py::object& material_mattes, const py::object& slot_begin,
-                const py::object& slots, const py::object& material_values) {
+                const py::object& slots, const py::object& material_values,
+                const py::object& object_colors) {
   const auto object_index = view<float>(object_pass_index, "object_pass_index", {-1});
   const auto objects = static_cast<py::ssize_t>(object_index.size());
   const auto object_ids = view<float>(object_mattes, "object_mattes", {objects, 2});
@@ -180,6 +183,7 @@ void set_tables(Scene& scene, const py::object& object_pass_index, const py::obj
   const auto material_index = view<float>(material_pass_index, "material_pass_index", {-1});
   const auto materials = static_cast<py::ssize_t>(material_index.size());
   const auto material_ids = view<float>(material_mattes, "material_mattes", {materials});
+  const auto colors = optional_view<float>(object_colors, "object_colors", {objects, 4});
   const auto begin = view<std::uint32_t>(slot_begin, "slot_begin", {-1});
   const auto entries = view<std::uint32_t>(slots, "slots", {-1});
   SceneTables tables;
@@ -187,6 +191,9 @@ void set_tables(Scene& scene, const py::object& object_pass_index, const py::obj
     tables.objects.push_back({object_index[i], std::bit_cast<std::uint32_t>(object_ids[2 * i]),
                               std::bit_cast<std::uint32_t>(object_ids[2 * i + 1]),
                               terminator[2 * i], 1.0f / (1.0f - 0.5f * terminator[2 * i + 1])});
+    if (colors.empty()) continue;
+    tables.objects[i].color = Vec3(colors[4 * i], colors[4 * i + 1], colors[4 * i + 2]);
+    tables.objects[i].alpha = colors[4 * i + 3];
   }
   for (std::size_t i = 0; i < material_index.size(); ++i) {
     tables.materials.push_back({material_index[i], std::bit_cast<std::uint32_t>(material_ids[i])});
@@ -201,6 +208,24 @@ void set_tables(Scene& scene, const py::object& object_pass_index, const py::obj
   scene.set_tables(std::move(tables));
 }
 
+void set_surfaces(Scene& scene, const py::list& surfaces, const py::object& instance_random) {
+  std::vector<Material> materials;
+  for (const py::handle& item : surfaces) {
+    const auto parts = item.cast<py::tuple>();
+    Material material;
+    material.camera = parts[0].cast<SurfaceProgram>();
+    if (!parts[1].is_none()) material.bounce = parts[1].cast<SurfaceProgram>();
+    if (!parts[2].is_none()) material.clear = parts[2].cast<std::shared_ptr<Program>>();
+    if (material.clear && material.clear->output_count() != 3) {
+      throw std::invalid_argument(material.clear->name() + ": a transparency has three outputs");
+    }
+    materials.push_back(std::move(material));
+  }
+  const auto random = optional_view<float>(instance_random, "instance_random",
+                                           {static_cast<py::ssize_t>(scene.instance_count())});
+  scene.set_surfaces(std::move(materials), {random.begin(), random.end()});
+}
+
 void commit(Scene& scene, unsigned threads, const std::shared_ptr<Cancel>& cancel,
             bool keep_inputs) {
   const py::gil_scoped_release release;
@@ -213,6 +238,7 @@ void bind_mesh(py::module_& module) {
       "A triangle mesh, curves or points with their tree; immutable, shared by as many scenes as "
       "hold it.");
   bind_round(mesh);
+  bind_attributes(mesh);
   mesh.def(py::init(&make_mesh),
            R"(Copies a polygon mesh into the tracer's layout and builds its tree; releases the GIL.
 
@@ -227,7 +253,9 @@ tree is shared then. motion_positions: float32 [2k, V, 3], positions at the othe
 shutter in their order; all with `positions` in the middle are at even times from its opening to its
 closing. motion_normals: float32 [2k, C or V, 3] likewise; None if normals do not change.
 step_positions: float32 [2, V, 3], positions a step of time before and after, which the Vector pass
-of a shutter that stays shut compares; the mesh itself stands still.
+of a shutter that stays shut compares; the mesh itself stands still. attributes: {name: (domain,
+float32 [rows, 1 to 4])}, domain POINT, CORNER or FACE with a row a vertex, corner or face; what is
+not finite counts as 0 (see warnings).
 Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
            py::arg("name"), py::arg("positions"), py::arg("corner_verts"), py::arg("face_offsets"),
            py::kw_only(), py::arg("tri2corner") = py::none(), py::arg("tri2face") = py::none(),
@@ -237,7 +265,7 @@ Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
            py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
            py::arg("same_geometry") = std::shared_ptr<Mesh>(),
            py::arg("motion_positions") = py::none(), py::arg("motion_normals") = py::none(),
-           py::arg("step_positions") = py::none())
+           py::arg("step_positions") = py::none(), py::arg("attributes") = py::none())
       .def(
           "rebuilt",
           [](const Mesh& old, const std::string& builder, unsigned threads,
@@ -314,14 +342,21 @@ void bind_scene(py::module_& module) {
       .def("set_tables", &set_tables, py::kw_only(), py::arg("object_pass_index"),
            py::arg("object_mattes"), py::arg("object_terminators"), py::arg("material_pass_index"),
            py::arg("material_mattes"), py::arg("slot_begin"), py::arg("slots"),
-           py::arg("material_values") = py::none(),
+           py::arg("material_values") = py::none(), py::arg("object_colors") = py::none(),
            "What passes tell of objects and materials. Pass indices and Cryptomatte ids: float32 "
            "[N], object_mattes [N, 2] of object and asset. object_terminators: float32 [N, 2], "
            "Blender's shadow_terminator_geometry_offset and the shading one, 0 to 1. List l of "
            "material slots is "
            "slots[slot_begin[l]:slot_begin[l + 1]], indices of materials; uint32 both. "
            "material_values: float32 [N, K], what holds all over a material; the pass \"Material "
-           "Value f n\" shows n (1 to 4) of them from number f on.")
+           "Value f n\" shows n (1 to 4) of them from number f on. object_colors: float32 [N, 4], "
+           "Blender's Object.color, for nodes that ask for it.")
+      .def("set_surfaces", &set_surfaces, py::arg("surfaces"),
+           py::arg("instance_random") = py::none(),
+           "Of each material of set_tables (SurfaceProgram to camera rays, SurfaceProgram to rays "
+           "that bounce light or None if it is the same, Program of the transparency to light "
+           "rays or None if it is opaque). instance_random: float32, a number from 0 to 1 for each "
+           "instance that was added.")
       .def(
           "set_world_color",
           [](Scene& scene, const std::array<float, 3>& c) {

@@ -52,6 +52,7 @@ std::shared_ptr<Settings> make_settings(
     std::uint32_t sample_offset, std::uint32_t seed, bool use_adaptive_sampling,
     float adaptive_threshold, std::uint32_t adaptive_min_samples, float time_limit,
     float ao_distance, const std::string& ao_sampling, const std::array<float, 3>& clay_color,
+    std::uint32_t bounces, float sample_clamp_direct, float sample_clamp_indirect,
     const std::string& environment_sampling, const std::string& pixel_filter, float filter_width,
     bool use_progressive, bool film_transparent, float mist_start, float mist_depth,
     const std::string& mist_falloff, std::uint32_t threads, std::uint32_t tile_size,
@@ -69,6 +70,9 @@ std::shared_ptr<Settings> make_settings(
   s->ao_distance = ao_distance;
   s->ao_sampling = parse("ao_sampling", ao_sampling, kAoSamplings);
   s->clay_color = Vec3(clay_color[0], clay_color[1], clay_color[2]);
+  s->bounces = bounces;
+  s->sample_clamp_direct = sample_clamp_direct;
+  s->sample_clamp_indirect = sample_clamp_indirect;
   s->environment_sampling =
       parse("environment_sampling", environment_sampling, kEnvironmentSamplings);
   s->pixel_filter = parse("pixel_filter", pixel_filter, kPixelFilters);
@@ -164,6 +168,8 @@ void bind_settings(py::module_& module) {
            py::arg("time_limit") = d.time_limit, py::arg("ao_distance") = d.ao_distance,
            py::arg("ao_sampling") = "COSINE",
            py::arg("clay_color") = std::array<float, 3>{0.8f, 0.8f, 0.8f},
+           py::arg("bounces") = 0, py::arg("sample_clamp_direct") = 0.0f,
+           py::arg("sample_clamp_indirect") = 10.0f,
            py::arg("environment_sampling") = "PRODUCT", py::arg("pixel_filter") = "BLACKMAN_HARRIS",
            py::arg("filter_width") = d.filter_width, py::arg("use_progressive") = d.use_progressive,
            py::arg("film_transparent") = d.film_transparent, py::arg("mist_start") = d.mist_start,

@@ -4,8 +4,10 @@
 
 #include "python/arrays.h"
 #include "python/bind.h"
+#include "render/material.h"
 #include "shader/op_table.h"
 #include "shader/program.h"
+#include "texture/texture.h"
 
 namespace komorebi::python {
 namespace {
@@ -36,6 +38,8 @@ std::shared_ptr<Program> make_program(const std::string& name, const py::list& o
     const auto values = optional_view<float>(table, name + ": table of \"" + op.op + "\"", {-1});
     op.table.assign(values.begin(), values.end());
     op.name = item.attr("name").cast<std::string>();
+    const py::object texture = item.attr("texture");
+    if (!texture.is_none()) op.texture = texture.cast<std::shared_ptr<Texture>>();
     inputs.push_back(std::move(op));
   }
   std::vector<Operand> wanted;
@@ -116,6 +120,20 @@ void bind_shader(py::module_& module) {
   module.def(
       "has_op", [](const std::string& name) { return find_op(name) != nullptr; }, py::arg("name"),
       "Whether programs can have an operation of this name.");
+  py::class_<SurfaceProgram>(module, "SurfaceProgram",
+                             "What a material says of surfaces to one kind of ray.")
+      .def(py::init([](std::shared_ptr<Program> program,
+                       const std::vector<std::pair<bool, bool>>& lobes) {
+             std::vector<SurfaceProgram::LobeInput> inputs;
+             for (const auto& [transmits, has_normal] : lobes) {
+               inputs.push_back({transmits, has_normal});
+             }
+             return SurfaceProgram(std::move(program), inputs);
+           }),
+           py::arg("program"), py::arg("lobes"),
+           "Outputs of the program: emission (3), transparency (3), holdout (1), then of each lobe "
+           "its weight (3) and, if it has one, its normal (3). lobes: (transmits, has_normal) "
+           "each.");
   py::class_<Program, std::shared_ptr<Program>>(
       module, "Program", "A world's or material's nodes as operations; immutable.")
       .def(py::init(&make_program), py::arg("name"), py::arg("ops"), py::arg("outputs"),

@@ -13,10 +13,12 @@ RenderContext ambient_context(const RenderContext& given, float distance) {
   context.sky = constant_environment(Vec3(1.0f));
   context.product = {};
   context.albedo = Vec3(1.0f);
+  context.has_materials = false;
+  context.bounces = 0;
   context.light_distance = distance;
   context.light_mask = kMaskShadow;
   context.surface_mask = 0;
-  context.light_dimension = kVertexAmbient;
+  context.light_dimension = vertex_dimension(0, kVertexAmbient);
   context.lifts_rays = context.has_terminators;
   context.cuts_cosines = context.bends_round = false;
   return context;

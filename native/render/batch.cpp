@@ -3,9 +3,11 @@
 #include <algorithm>
 
 #include "bvh/traverse.h"
+#include "core/path_key.h"
 #include "render/camera_kernel.h"
 #include "render/one_ray.h"
 #include "render/pass_row.h"
+#include "render/shade.h"
 
 namespace komorebi {
 namespace {
@@ -21,16 +23,22 @@ BatchIntegrator::BatchIntegrator(const RenderContext& context)
     : context_(context),
       of_light_(passes_of_light_rays(context)),
       light_caster_(context),
-      has_catchers_(context.passes.keeps(Quantity::kCatcherLight)) {
+      has_catchers_(context.passes.keeps(Quantity::kCatcherLight)),
+      bounces_(context),
+      bounces_alone_(alone_context(context)) {
   for (const AmbientCast& cast : ambient_casts(context)) {
     ambient_.push_back({cast.passes, LightCaster(cast.context)});
   }
 }
 
 std::uint64_t BatchIntegrator::ray_count() const {
-  std::uint64_t count = camera_ray_count_ + light_caster_.ray_count();
+  std::uint64_t count = camera_ray_count_ + light_caster_.ray_count() + bounce_ray_count();
   for (const Ambient& ambient : ambient_) count += ambient.caster.ray_count();
   return count;
+}
+
+std::uint64_t BatchIntegrator::bounce_ray_count() const {
+  return bounces_.ray_count() + bounces_alone_.ray_count();
 }
 
 RayTally BatchIntegrator::ambient_tally() const {
@@ -82,6 +90,10 @@ void BatchIntegrator::start_camera_rays(std::uint32_t count) {
   std::fill_n(camera_rays_.words(0), count, kMaskCamera);
   std::fill_n(camera_rays_.words(1), count, kNone);
   std::fill_n(camera_rays_.words(2), count, kNone);
+  if (!context_.scene.filter.exists()) return;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    camera_rays_.words(3)[i] = path_key(block.pixel_seed[i], kDimensionPixel, block.sample[i]);
+  }
 }
 
 void BatchIntegrator::shade() {
@@ -104,10 +116,18 @@ void BatchIntegrator::shade() {
     }
   }
   surfaces_.fill(context_, hits_.data(), rays);
+  if (context_.has_materials || context_.bounces > 0) {
+    shader_.shade(context_, 0, hits_.data(), rays, context_.light_samples, surfaces_);
+    for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
+      results_[surfaces_.path(s)].alpha = 1.0f - surfaces_.shading(s).holdout;
+    }
+  }
   if (layout.size() == 0) return;
   for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
     const std::uint32_t path = surfaces_.path(s);
-    put_surface(context_, hits_[path], rays[path], surfaces_.normal(s), surfaces_.depth(s),
+    const Shading shading =
+        context_.has_materials ? surfaces_.shading(s) : clay_shading(context_, 0);
+    put_surface(context_, hits_[path], rays[path], surfaces_.normal(s), surfaces_.depth(s), shading,
                 paths_[path].sample, row(path));
   }
 }
@@ -127,11 +147,45 @@ bool BatchIntegrator::light(const Cancel& cancel) {
       ambient_block(ambient.passes, ambient.caster, begin, end);
     });
   }
-  for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
-    results_[surfaces_.path(s)].radiance /= static_cast<float>(context_.light_samples);
-  }
+  if (cancel.raised()) return false;
+  add_direct_light();
+  if (context_.bounces > 0 && !bounce(cancel)) return false;
   if (context_.passes.size() > 0) finish_passes();
   return !cancel.raised();
+}
+
+/// Sums over light rays → what the surfaces in view bring.
+void BatchIntegrator::add_direct_light() {
+  const PassLayout& layout = context_.passes;
+  const auto light_rays = static_cast<float>(context_.light_samples);
+  for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
+    const std::uint32_t path = surfaces_.path(s);
+    const Shading shading = context_.has_materials ? surfaces_.shading(s) : Shading{};
+    Vec3& radiance = results_[path].radiance;
+    radiance = direct_light(context_, shading, radiance / light_rays);
+    if (!has_catchers_ || !is_catcher(context_, hits_[path].instance)) continue;
+    const Vec3 alone = layout.get(row(path), Quantity::kCatcherLight) / light_rays;
+    layout.put(row(path), Quantity::kCatcherLight, direct_light(context_, shading, alone));
+  }
+}
+
+bool BatchIntegrator::bounce(const Cancel& cancel) {
+  bounces_.clear();
+  bounces_alone_.clear();
+  for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
+    const std::uint32_t path = surfaces_.path(s);
+    const auto [pixel, sample] = paths_[path];
+    const std::uint32_t seed = pixels_[pixel].seed;
+    bounces_.begin(surfaces_, s, path, seed, sample);
+    if (has_catchers_ && is_catcher(context_, hits_[path].instance)) {
+      bounces_alone_.begin(surfaces_, s, path, seed, sample);
+    }
+  }
+  return bounces_.trace(cancel, [&](std::uint32_t path, const Vec3& light) {
+    results_[path].radiance += light;
+  }) && bounces_alone_.trace(cancel, [&](std::uint32_t path, const Vec3& light) {
+    context_.passes.add(row(path), Quantity::kCatcherLight, light);
+  });
 }
 
 void BatchIntegrator::light_block(std::uint32_t begin, std::uint32_t end) {
@@ -173,7 +227,6 @@ void BatchIntegrator::ambient_block(const AmbientPasses& passes, LightCaster& ca
 void BatchIntegrator::finish_passes() {
   const PassLayout& layout = context_.passes;
   const RaySpan rays = camera_rays_.span();
-  const auto light_rays = static_cast<float>(context_.light_samples);
   for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
     const std::uint32_t path = surfaces_.path(s);
     if (layout.keeps_ambient()) finish_ambient(context_, row(path));
@@ -181,7 +234,6 @@ void BatchIntegrator::finish_passes() {
       put_matte(layout, results_[path], row(path));
       continue;
     }
-    layout.divide(row(path), Quantity::kCatcherLight, light_rays);
     put_environment(context_, rays[path].direction, row(path));
   }
 }

@@ -5,11 +5,13 @@
 
 #include "parallel/cancel.h"
 #include "render/ambient.h"
+#include "render/bounce_tracer.h"
 #include "render/cells.h"
 #include "render/context.h"
 #include "render/film.h"
 #include "render/light_caster.h"
 #include "render/ray_batch.h"
+#include "render/shade.h"
 #include "render/surface_batch.h"
 
 namespace komorebi {
@@ -20,7 +22,7 @@ struct PixelPlace {
 };
 
 /// Renders cells in batches of some thousand paths, stage by stage: start → closest hits → light
-/// rays → occlusion → film. The arrays live as long as the object, one a thread.
+/// rays → occlusion → bounces → film. The arrays live as long as the object, one a thread.
 class BatchIntegrator {
  public:
   explicit BatchIntegrator(const RenderContext& context);
@@ -35,6 +37,7 @@ class BatchIntegrator {
               const Cancel& cancel);
 
   std::uint64_t ray_count() const;
+  std::uint64_t bounce_ray_count() const;
   /// Of the rays that look for ambient occlusion, as picture or as pass.
   RayTally ambient_tally() const;
 
@@ -62,6 +65,8 @@ class BatchIntegrator {
   void light_block(std::uint32_t begin, std::uint32_t end);
   void ambient_block(const AmbientPasses& passes, LightCaster& caster, std::uint32_t begin,
                      std::uint32_t end);
+  void add_direct_light();
+  bool bounce(const Cancel& cancel);
   void finish_passes();
   float* row(std::uint32_t path) { return rows_.data() + context_.passes.size() * path; }
 
@@ -72,6 +77,7 @@ class BatchIntegrator {
   RayBatch camera_rays_;
   std::vector<Hit> hits_;
   SurfaceBatch surfaces_;
+  BatchShader shader_;
   std::vector<PixelSample> results_;
   std::vector<float> rows_;  // [paths][context_.passes.size()]
   AmbientPasses of_light_;   // passes that light rays fill
@@ -82,6 +88,7 @@ class BatchIntegrator {
   };
   std::vector<Ambient> ambient_;
   bool has_catchers_;
+  BounceTracer bounces_, bounces_alone_;  // the latter among shadow catchers
   std::uint64_t camera_ray_count_ = 0;
 };
 

@@ -17,15 +17,22 @@ struct RenderContext {
   CameraView camera;
   EnvironmentView environment;  ///< what is seen behind the scene, unless a program says it
   const Program* world_program = nullptr;
-  EnvironmentView sky;          ///< what lights it: the same, or white for ambient occlusion
-  ProductView product;          ///< bins = 0: light rays are drawn by cosine_share
+  EnvironmentView sky;  ///< what lights it: the same, or white for ambient occlusion
+  ProductView product;  ///< bins = 0: light rays are drawn by cosine_share
   FilterView filter;
   Method method = Method::kAmbientOcclusion;
   AoSampling ao_sampling = AoSampling::kCosine;
-  Vec3 albedo{1.0f};            ///< of every surface; 1 for ambient occlusion
+  Vec3 albedo{1.0f};               ///< what light rays are drawn for: see lit_albedo (shade.h)
+  Vec3 clay_albedo{0.8f};          ///< of surfaces without a material
+  bool has_materials = false;      ///< whether surfaces have albedos of their own (shade.h)
+  std::uint32_t bounces = 0;       ///< how often a path goes on from a surface
+  bool indirect_emission = false;  ///< whether what paths find shines on the surfaces before it
+  /// Most that a vertex brings, as the sum of the channels: in view, and after a bounce.
+  float clamp_direct = Ray{}.t_max, clamp_indirect = Ray{}.t_max;
   float light_distance = 0.0f;  ///< largest t of a light ray
   float cosine_share = 1.0f;  ///< share of light rays drawn from the cosine; the rest from the map
-  std::uint32_t light_mask = kMaskShadow;  ///< of light rays
+  std::uint32_t light_mask = kMaskShadow;     ///< of light rays
+  std::uint32_t scatter_mask = kMaskDiffuse;  ///< of rays to the next surface
   /// Where it matters that Cycles finds a map's light by rays of two kinds (surface_share in
   /// light.h): the mask of those that it samples by the surface, light_mask being that of the
   /// others, and the map's mean_flux with its strength. Else 0.
@@ -34,7 +41,8 @@ struct RenderContext {
   /// Whether rays may leave above coarse smooth surfaces, and then go below their own triangle, or
   /// cosines be cut (core/terminator.h). Points have a terminator where any of their rays heeds it.
   bool has_terminators = false, lifts_rays = false, bends_round = false, cuts_cosines = false;
-  VertexDimension light_dimension = kVertexLightDirection;  ///< that light rays are drawn by
+  std::uint32_t light_dimension =
+      vertex_dimension(0, kVertexLightDirection);  ///< that light rays are drawn by
   bool transparent = false;
   std::uint32_t seed = 0;
   std::uint32_t light_samples = 1;
@@ -43,9 +51,10 @@ struct RenderContext {
   StepsView steps;
   bool has_vector = false;  ///< whether that pass is kept and not black, as where motion is blurred
 
-  PassLayout passes;                    ///< what is kept besides radiance and alpha
-  const SceneTables* tables = nullptr;  ///< for passes that tell what is seen
-  Vec3d origin{0.0};                    ///< of the scene's space in Blender's
+  PassLayout passes;                              ///< what is kept besides radiance and alpha
+  const SceneTables* tables = nullptr;            ///< for passes that tell what is seen
+  Vec3d origin{0.0};                              ///< of the scene's space in Blender's
+  float frame_width = 1.0f, frame_height = 1.0f;  ///< of the whole frame, in pixels
   std::uint32_t first_sample = 0;
   float ao_distance = 0.0f;  ///< largest t of a ray for ambient occlusion, whatever the method
   float mist_start = 0.0f, mist_depth = 0.0f;

@@ -22,6 +22,9 @@ void for_each_setting(SettingsLike& s, const Visit& visit) {
   visit("clay_color_r", s.clay_color.x);
   visit("clay_color_g", s.clay_color.y);
   visit("clay_color_b", s.clay_color.z);
+  visit("bounces", s.bounces);
+  visit("sample_clamp_direct", s.sample_clamp_direct);
+  visit("sample_clamp_indirect", s.sample_clamp_indirect);
   visit("environment_sampling", s.environment_sampling);
   visit("pixel_filter", s.pixel_filter);
   visit("filter_width", s.filter_width);

@@ -65,7 +65,7 @@ Film::Film(const Rect& region, const Settings& settings, float max_radiance, boo
       counts_(bands_.size() * cells_across_, 0) {
   const int bits = 62 - sample_bits(settings);
   // Ambient occlusion is radiance under a sky of 1, whatever the world behind it.
-  const double radiance = std::max(1.0, double{max_radiance});
+  const double radiance = std::max(1.0, double{max_radiance}) * bounce_gain(settings);
   radiance_scale_ = power_of_two_scale(radiance, bits);
   unit_scale_ = power_of_two_scale(1.0, bits);
   limit_ = std::ldexp(1.0, bits);

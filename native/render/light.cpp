@@ -73,7 +73,7 @@ LightSample sample_sky_product(const RenderContext& context, const SurfacePoint&
 
 LightSample sample_light(const RenderContext& context, const SurfacePoint& point,
                          const Sampler& sampler, std::uint32_t index) {
-  const Bits2 bits = sampler.bits_2d(vertex_dimension(0, context.light_dimension), index);
+  const Bits2 bits = sampler.bits_2d(context.light_dimension, index);
   if (context.product.bins > 0) return sample_sky_product(context, point, bits);
   if (context.method == Method::kWorldLight) return sample_sky(context, point, bits);
   return sample_ambient(context, point, Vec2(to_unit_float(bits.x), to_unit_float(bits.y)));

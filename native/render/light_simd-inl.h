@@ -23,9 +23,7 @@ template <class Prepare, class Sample>
 HWY_INLINE void for_each_ray(const RenderContext& context, const LightBlock& block,
                              const Prepare& prepare, const Sample& sample) {
   const TagU du;
-  const std::uint32_t light_hash =
-      dimension_hash(static_cast<std::uint32_t>(kDimensionVertex) +
-                     static_cast<std::uint32_t>(context.light_dimension));
+  const std::uint32_t light_hash = dimension_hash(context.light_dimension);
   for (std::size_t p = 0; p < block.point_count; p += hn::Lanes(du)) {
     const PairSampler sampler(hn::LoadU(du, block.pixel_seed + p), light_hash);
     const Uint first = hn::LoadU(du, block.first_index + p);

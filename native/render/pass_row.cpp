@@ -6,23 +6,11 @@
 
 #include "core/motion_vector.h"
 #include "core/surface_point.h"
+#include "render/camera_axes.h"
 #include "render/world_program.h"
 
 namespace komorebi {
 namespace {
-
-/// The axes of the camera: right, up, and the way it looks; of a panorama those of Cycles, which
-/// turns it as it turns environment maps: the way it looks, left, up (a mirror ball: right, back,
-/// up).
-Mat3d camera_axes(const CameraView& camera) {
-  if (camera.kind == CameraKind::kPanorama) {
-    const Mat3d& axes = camera.world_from_camera;
-    return camera.panorama.kind == PanoramaKind::kMirrorBall ? Mat3d(axes[0], axes[2], axes[1])
-                                                             : Mat3d(-axes[2], -axes[0], axes[1]);
-  }
-  return Mat3d(glm::normalize(camera.per_x), glm::normalize(camera.per_y),
-               glm::normalize(camera.depth_gradient));
-}
 
 /// How much of a point is lost in the mist: 0 near the camera, 1 from mist_start + mist_depth on.
 float mist(const RenderContext& context, const Vec3d& position) {
@@ -97,7 +85,7 @@ void put_values(const RenderContext& context, const Hit& hit, float* row) {
 }
 
 void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, const Vec3& normal,
-                 float depth, std::uint32_t sample, float* row) {
+                 float depth, const Shading& shading, std::uint32_t sample, float* row) {
   const PassLayout& layout = context.passes;
   const InstanceView& instance = context.scene.instances[hit.instance];
   const MeshView& mesh = context.scene.meshes[instance.mesh];
@@ -112,7 +100,7 @@ void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, c
   }
   put_values(context, hit, row);
   layout.put(row, Quantity::kNormal, normal);
-  layout.put(row, Quantity::kDiffuseColor, context.albedo);
+  layout.put(row, Quantity::kDiffuseColor, shading.color);
   layout.put(row, Quantity::kDenoisingRoughness, 1.0f);  // of matt surfaces, as in Cycles
   layout.put(row, Quantity::kDenoisingDepth, hit.t);
   if (context.has_vector) {
@@ -133,8 +121,7 @@ void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, c
 
 void put_environment(const RenderContext& context, const Vec3& direction, float* row) {
   if (!context.passes.keeps(Quantity::kEnvironment)) return;
-  context.passes.put(row, Quantity::kEnvironment,
-                     world_radiance(context, direction));
+  context.passes.put(row, Quantity::kEnvironment, world_radiance(context, direction));
 }
 
 void put_matte(const PassLayout& layout, const PixelSample& sample, float* row) {

@@ -106,16 +106,15 @@ struct PassLayout {
     to[2] = v.z;
   }
 
-  /// The same three channels added to, and divided, if they are kept.
+  /// The same three channels added to, if they are kept, and read, which they must be.
   void add(float* row, Quantity q, const Vec3& v) const {
     if (!keeps(q)) return;
     float* to = row + place[static_cast<std::size_t>(q)];
     for (int c = 0; c < 3; ++c) to[c] += v[c];
   }
-  void divide(float* row, Quantity q, float by) const {
-    if (!keeps(q)) return;
-    float* to = row + place[static_cast<std::size_t>(q)];
-    for (int c = 0; c < 3; ++c) to[c] /= by;
+  Vec3 get(const float* row, Quantity q) const {
+    const float* from = row + place[static_cast<std::size_t>(q)];
+    return Vec3(from[0], from[1], from[2]);
   }
 };
 

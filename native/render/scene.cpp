@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "render/material_filter.h"
 #include "render/world_program.h"
 
 namespace komorebi {
@@ -193,6 +194,16 @@ void Scene::set_tables(SceneTables tables) {
   tables_ = std::move(tables);
 }
 
+void Scene::set_surfaces(std::vector<Material> surfaces, std::vector<float> instance_random) {
+  require_open();
+  if (surfaces.size() != tables_.materials.size()) {
+    throw std::invalid_argument(std::to_string(surfaces.size()) + " surfaces for " +
+                                std::to_string(tables_.materials.size()) + " materials");
+  }
+  tables_.surfaces = std::move(surfaces);
+  tables_.instance_random = std::move(instance_random);
+}
+
 EnvironmentView Scene::environment() const {
   return environment_ ? environment_->view(strength_, texture_from_world_)
                       : constant_environment(world_color_);
@@ -220,7 +231,7 @@ void Scene::place(const InstanceInput& input, std::span<const Mat4d> poses, Thre
   }
   instance.flags = input.flags & 3u;
   instance.object_index = input.object_index;
-  instance.material_slots = input.material_slots;
+  instance.material_slots = input.material_slots & 0x7fffffffu;
   Mat3d linear(input.world_from_object);
   Mat3d inverse;
   Vec3d position = Vec3d(input.world_from_object[3]);
@@ -338,6 +349,8 @@ void Scene::commit(ThreadPool& pool, const Cancel& cancel, bool keep_inputs) {
     std::vector<Mat4d>().swap(poses_);
     inputs_gone_ = true;
   }
+  filter_by_materials();
+  mark_filtered();
   view_meshes();
   build_tree(pool, cancel);
   if (has_camera_) {
@@ -359,6 +372,7 @@ void Scene::commit(ThreadPool& pool, const Cancel& cancel, bool keep_inputs) {
   view_.motion_group_count = static_cast<std::uint32_t>(motion_.groups.size());
   view_.moves = !motion_.groups.empty();
   for (const auto& mesh : traced_meshes_) view_.moves = view_.moves || mesh->deforms();
+  if (material_filter_) material_filter_->bind(*this);
   if (!is_still()) return;
   for (const auto& mesh : traced_meshes_) mesh_steps_.push_back(mesh->step_positions());
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/vector.h"
+#include "render/material.h"
 
 namespace komorebi {
 
@@ -14,6 +15,8 @@ struct ObjectInfo {
   std::uint32_t matte = 0, matte_asset = 0;
   float terminator_cutoff = 0.0f;     ///< Blender's shadow_terminator_geometry_offset
   float terminator_frequency = 1.0f;  ///< 1 / (1 − shadow_terminator_offset / 2)
+  Vec3 color{1.0f};                   ///< of Blender's viewport display, for Object Info nodes
+  float alpha = 1.0f;
 };
 
 struct MaterialInfo {
@@ -31,6 +34,15 @@ struct SceneTables {
   /// Numbers that hold all over a material, [materials][value_count]: what shader AOVs say.
   std::uint32_t value_count = 0;
   std::vector<float> values;
+
+  std::vector<Material> surfaces;  ///< of `materials`; empty: all are clay
+  /// Of each instance a number from 0 to 1; empty if no surface asks for it.
+  std::vector<float> instance_random;
+
+  const Material& surface(std::uint32_t material) const {
+    static const Material kPlain;
+    return material < surfaces.size() ? surfaces[material] : kPlain;
+  }
 
   /// Whether rays from any object may be lifted, or its cosines cut.
   bool lifts_rays() const {

@@ -1,5 +1,6 @@
 #include "render/settings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -9,12 +10,20 @@ namespace {
 /// Blender's own limits for samples and resolution are below these; the film's sums rely on them.
 constexpr std::uint32_t kMaxSamples = 1u << 24;
 constexpr std::uint32_t kMaxLightSamples = 1u << 12;
+constexpr std::uint32_t kMaxBounces = 1024;
 
 void require(bool holds, const char* sentence) {
   if (!holds) throw std::invalid_argument(sentence);
 }
 
 }  // namespace
+
+double bounce_gain(const Settings& s) {
+  const double most = double{std::max(std::max(s.clay_color.x, s.clay_color.y), s.clay_color.z)};
+  double gain = 1.0, share = 1.0;
+  for (std::uint32_t i = 0; i < s.bounces; ++i) gain += share *= most;
+  return gain;
+}
 
 void check_settings(const Settings& s, std::uint32_t width, std::uint32_t height) {
   require(s.samples >= 1 && s.samples <= kMaxSamples, "samples must be 1 to 16777216");
@@ -43,6 +52,11 @@ void check_settings(const Settings& s, std::uint32_t width, std::uint32_t height
     require(std::isfinite(s.clay_color[c]) && s.clay_color[c] >= 0.0f && s.clay_color[c] <= 1.0f,
             "each channel of clay_color must be 0 to 1");
   }
+  require(s.bounces <= kMaxBounces, "bounces must be 0 to 1024");
+  require(
+      std::isfinite(s.sample_clamp_direct) && s.sample_clamp_direct >= 0.0f &&
+          std::isfinite(s.sample_clamp_indirect) && s.sample_clamp_indirect >= 0.0f,
+      "sample_clamp_direct and sample_clamp_indirect must be finite and not negative (0 is none)");
   require(std::isfinite(s.filter_width) && s.filter_width >= 0.01f && s.filter_width <= 10.0f,
           "filter_width must be 0.01 to 10 pixels");
   require(std::isfinite(s.mist_start) && std::isfinite(s.mist_depth) && s.mist_depth >= 0.0f,

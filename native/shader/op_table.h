@@ -21,5 +21,7 @@ std::span<const OpInfo> spectrum_ops();
 std::span<const OpInfo> surface_ops();
 std::span<const OpInfo> table_ops();
 std::span<const OpInfo> voronoi_ops();
+std::span<const OpInfo> sky_ops();
+std::span<const OpInfo> texture_ops();
 
 }  // namespace komorebi

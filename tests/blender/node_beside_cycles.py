@@ -162,11 +162,16 @@ class Stage:
         rows |= {"object_location": matrix[:3, 3], "object_color": thing.color[:3],
                  "object_alpha": thing.color[3:], "object_index": [thing.pass_index],
                  "material_index": [thing.active_material.pass_index]}  # fmt: skip
-        return {name: np.tile(np.asarray(row, np.float32), (count, 1)) for name, row in rows.items()}
+        return {
+            name: np.tile(np.asarray(row, np.float32), (count, 1)) for name, row in rows.items()
+        }
 
     def camera_from_world(self):
-        """Right, up and depth, as Cycles has the camera's space."""
-        return np.diag([1, 1, -1, 1]) @ np.array(self.scene.camera.matrix_world.inverted())
+        """As Cycles has the camera's space: right, up and depth; a panorama's: depth, left and up."""
+        axes = np.diag([1, 1, -1, 1])
+        if self.is_world:
+            axes = np.array([[0, 0, -1, 0], [-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+        return axes @ np.array(self.scene.camera.matrix_world.inverted())
 
     def ours(self, socket, ray=None):
         """[points, 3] as our program has it."""

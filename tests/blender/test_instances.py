@@ -23,7 +23,7 @@ class Engine:
         pass
 
 
-def export(engine=None, materials=False):
+def export(engine=None):
     """SceneData with nothing but what export_instances fills in, of the open scene."""
     from komorebi.export.deform import DeformingShapes
     from komorebi.export.instance import export_instances
@@ -35,7 +35,7 @@ def export(engine=None, materials=False):
     graph = bpy.context.evaluated_depsgraph_get()
     engine = engine or Engine()
     still = DeformingShapes(engine, graph, None)
-    export_instances(engine, graph, data, Wanted(materials=materials), Unchanged(), still)
+    export_instances(engine, graph, data, Wanted(), Unchanged(), still)
     return data
 
 
@@ -123,7 +123,7 @@ def test_instances_of_one_mesh_have_the_materials_of_their_own_object():
         collection.objects.link(obj)
     empty = support.add_object("empty", None)
     empty.instance_type, empty.instance_collection = "COLLECTION", collection
-    data = export(materials=True)
+    data = export()
     found = {}
     for group in data.instances:
         for index, slots in zip(group.object_index, group.material_slots, strict=True):

@@ -24,6 +24,7 @@ def test_mix_rgb():
     stage = Stage()
     for kind in blends(stage.new("MixRGB")):
         for clamp, factor in ((False, 0.8), (True, 1.4)):
+
             def build(s, kind=kind, clamp=clamp, factor=factor):
                 node = s.new("MixRGB", blend_type=kind, use_clamp=clamp)
                 return s.feed(node, s.number(2, factor, 0.3), *colors(s))
@@ -35,6 +36,7 @@ def test_mix_color():
     stage = Stage()
     for kind in blends(stage.new("Mix")):
         for clamp in (False, True):
+
             def build(s, kind=kind, clamp=clamp):
                 node = s.new("Mix", data_type="RGBA", blend_type=kind)
                 node.clamp_factor, node.clamp_result = clamp, not clamp
@@ -47,6 +49,7 @@ def test_mix_numbers_and_vectors():
     stage = Stage()
     for kind, mode in (("FLOAT", "UNIFORM"), ("VECTOR", "UNIFORM"), ("VECTOR", "NON_UNIFORM")):
         for clamp in (False, True):
+
             def build(s, kind=kind, mode=mode, clamp=clamp):
                 node = s.new("Mix", data_type=kind, factor_mode=mode, clamp_factor=clamp)
                 factor = s.vector((1.2, 1.3, 1.4)) if mode == "NON_UNIFORM" else s.number(1, 1.5)
@@ -122,12 +125,14 @@ def test_color_ramp():
     stage = Stage()
     for interpolation in ("LINEAR", "EASE", "CARDINAL", "B_SPLINE", "CONSTANT"):
         for alpha in (False, True):
+
             def build(s, interpolation=interpolation, alpha=alpha):
                 return ramp(s, "RGB", interpolation, alpha)
 
             compare(stage, build, f"Color Ramp {interpolation} {alpha}")
     for mode in ("HSV", "HSL"):
         for interpolation in ("NEAR", "FAR", "CW", "CCW"):
+
             def build(s, interpolation=interpolation, mode=mode):
                 node = s.new("ValToRGB")
                 node.color_ramp.color_mode = mode
@@ -143,6 +148,7 @@ def test_curves():
     stage = Stage()
     for kind in ("RGBCurve", "VectorCurve", "FloatCurve"):
         for extend in ("HORIZONTAL", "EXTRAPOLATED"):
+
             def build(s, kind=kind, extend=extend):
                 node = s.new(kind)
                 mapping = node.mapping

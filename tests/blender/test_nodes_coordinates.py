@@ -11,7 +11,10 @@ def test_world_coordinates():
     bpy.context.scene.collection.objects.link(thing)
     thing.location, thing.scale, thing.rotation_euler = (0.2, 0.3, -0.1), (2, 1, 3), (0.4, 1, 2)
     bpy.context.view_layer.update()
-    for output in ("Generated", "Normal", "UV", "Object", "Reflection"):
+    bpy.context.scene.camera.matrix_world = ((0, 0, 1, 1), (1, 0, 0, 2), (0, 1, 0, 3), (0, 0, 0, 1))
+    for output in ("View Vector", "View Z Depth", "View Distance"):
+        compare(stage, lambda s, o=output: s.new("CameraData").outputs[o], f"World {output}")
+    for output in ("Generated", "Normal", "UV", "Object", "Reflection", "Camera"):
         compare(stage, lambda s, o=output: s.new("TexCoord").outputs[o], f"World {output}")
     compare(stage, lambda s: s.new("TexCoord", object=thing).outputs["Object"], "World Other")
     for output in ("Position", "Normal", "True Normal", "Incoming", "Parametric", "Backfacing"):
@@ -52,7 +55,9 @@ def test_attributes():
     for output in ("Color", "Vector", "Fac", "Alpha"):
         if output not in stage.new("Attribute").outputs:
             continue
-        compare(stage, lambda s, o=output: s.new("Attribute", attribute_name="Heat").outputs[o], output)
+        compare(
+            stage, lambda s, o=output: s.new("Attribute", attribute_name="Heat").outputs[o], output
+        )
 
 
 def test_mapping():
@@ -60,6 +65,7 @@ def test_mapping():
     for kind in ("POINT", "TEXTURE", "VECTOR", "NORMAL"):
         for linked in (False, True):
             for scale in ((0.7, 1.5, -2.0), (1.0, 0.0, 2.0)):
+
                 def build(s, kind=kind, linked=linked, scale=scale):
                     node = s.new("Mapping", vector_type=kind)
                     given = [s.vector(), (0.2, -0.1, 0.3), (0.4, -0.9, 2.0), scale]
@@ -79,6 +85,7 @@ def test_vector_rotate():
     stage = Stage()
     for kind in ("AXIS_ANGLE", "X_AXIS", "Y_AXIS", "Z_AXIS", "EULER_XYZ"):
         for invert in (False, True):
+
             def build(s, kind=kind, invert=invert):
                 node = s.new("VectorRotate", rotation_type=kind, invert=invert)
                 given = {"Vector": s.vector(), "Center": s.vector((0.3, 0.2, 0.1), turn=1),
@@ -93,10 +100,12 @@ def test_vector_rotate():
 
 
 def test_vector_transform():
-    for stage in (Stage(), Stage(bowl())):
+    for surface in (None, bowl):
+        stage = Stage(surface and surface())
         for kind in ("VECTOR", "POINT", "NORMAL"):
             for source in ("WORLD", "OBJECT", "CAMERA"):
                 for target in ("WORLD", "OBJECT", "CAMERA"):
+
                     def build(s, kind=kind, source=source, target=target):
                         node = s.new("VectorTransform", vector_type=kind)
                         node.convert_from, node.convert_to = source, target
@@ -109,6 +118,7 @@ def test_vector_transform():
 def test_normal():
     stage = Stage()
     for output in ("Normal", "Dot"):
+
         def build(s, output=output):
             node = s.new("Normal")
             node.outputs["Normal"].default_value = (0.6, 0.0, 0.8)

@@ -15,6 +15,7 @@ def test_math():
     stage = Stage()
     for operation in operations("ShaderNodeMath"):
         for clamp in (False, True):
+
             def build(s, operation=operation, clamp=clamp):
                 node = s.new("Math", operation=operation, use_clamp=clamp)
                 scale = 1.2 if operation in {"ARCSINE", "ARCCOSINE"} else 3.1
@@ -27,6 +28,7 @@ def test_math_with_zeros_and_whole_numbers():
     stage = Stage()
     for operation in operations("ShaderNodeMath"):
         for second in (0.0, 1.0, -2.0):
+
             def build(s, operation=operation, second=second):
                 first = s.feed(s.new("Math", operation="ROUND"), s.number(0, 3.0))
                 return s.feed(s.new("Math", operation=operation), first, second, 0.0)
@@ -37,6 +39,7 @@ def test_math_with_zeros_and_whole_numbers():
 def test_vector_math():
     stage = Stage()
     for operation in operations("ShaderNodeVectorMath"):
+
         def build(s, operation=operation):
             node = s.new("VectorMath", operation=operation)
             sockets = [i for i in node.inputs if i.enabled]
@@ -66,6 +69,7 @@ def test_clamp():
     stage = Stage()
     for kind in ("MINMAX", "RANGE"):
         for low, high in ((-0.3, 0.4), (0.5, -0.2)):
+
             def build(s, kind=kind, low=low, high=high):
                 node = s.new("Clamp", clamp_type=kind)
                 return s.feed(node, s.number(0, 2.0), low, high)
@@ -80,6 +84,7 @@ def test_map_range():
             for clamp in (False, True):
                 for numbers in ((-0.5, 0.6, 0.1, 0.9, 4.0), (0.7, -0.4, 2.0, -1.0, 2.5),
                                 (0.3, 0.3, 0.2, 1.0, 0.0)):  # fmt: skip
+
                     def build(s, data=data, kind=kind, clamp=clamp, numbers=numbers):
                         node = s.new("MapRange", data_type=data, interpolation_type=kind)
                         node.clamp = clamp

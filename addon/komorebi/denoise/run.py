@@ -12,7 +12,7 @@ import numpy as np
 from ..errors import RenderError
 from ..scene_data import FloatArray
 
-GUIDE = "Normal"  # the core's pass from which guides are made
+GUIDES = ("Diffuse Color", "Normal")  # the core's passes that help to denoise
 WORKER = os.path.join(os.path.dirname(__file__), "worker.py")
 
 
@@ -34,14 +34,10 @@ class Kill:
             process.kill()
 
 
-def guides(session: Any, width: int, height: int, albedo: Any) -> tuple[FloatArray, FloatArray]:
-    """Albedo and normal [height, width, 3] of what the camera sees first; zero where that is sky.
-
-    Every surface has the same `albedo`, so that this guide only parts surfaces from the sky.
-    """
-    normal = session.read(GUIDE, 0, 0, width, height)
-    surface = normal.any(axis=2, keepdims=True)
-    return surface * np.asarray(albedo, np.float32), normal
+def guides(session: Any, width: int, height: int) -> tuple[FloatArray, FloatArray]:
+    """Albedo and normal [height, width, 3] of what the camera sees first; zero of the sky."""
+    albedo, normal = (session.read(name, 0, 0, width, height) for name in GUIDES)
+    return albedo, normal
 
 
 def denoised(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -61,19 +61,19 @@ class _Exporter:
         self._depsgraph = depsgraph
         self._data = data
         self._object2index: dict[int, int] = {}
-        self._shapes = ShapeExporter(engine, depsgraph, data.meshes, wanted, unchanged, deforming)
         self._motion = motion
         self._visibility = Visibility(depsgraph)
-        self._materials = (
-            MaterialExporter(engine, depsgraph.view_layer, data.materials)
-            if wanted.materials
-            else None
+        self._materials = MaterialExporter(
+            engine, depsgraph.scene, depsgraph.view_layer, data.materials
         )
+        wanted = replace(wanted, attributes_of=self._materials.attributes_of)
+        self._shapes = ShapeExporter(engine, depsgraph, data.meshes, wanted, unchanged, deforming)
         self._entries: list[_Entry] = []
         # Of each instance that is taken, in the order of the walk:
         self._entry = array("I")
         self._masks = array("I")
         self._flags = array("I")
+        self._random = array("I")
         self._matrices: OneByOne | AllAtOnce = OneByOne()
         self.ignored: Counter[str] = Counter()
 
@@ -114,6 +114,8 @@ class _Exporter:
             self._motion.place(shape, len(self._entry), instance, subject, what)
         self._entry.append(entry)
         self._matrices.add(instance, number)
+        # What is placed before a material asks has none that does.
+        self._random.append(instance.random_id if self._materials.asks_random else 0)
         if self._visibility.matters:
             mask, flags = self._visibility.of(instance, subject.original)
             self._masks.append(mask)
@@ -122,7 +124,7 @@ class _Exporter:
     def _add_entry(self, shape: int, obj: Any) -> int:
         if shape == NONE:
             return NONE
-        slots = 0 if self._materials is None else self._materials.slots_of(obj)
+        slots = self._materials.slots_of(obj)
         self._entries.append(_Entry(shape, self._object_index(obj.original), slots))
         return len(self._entries) - 1
 
@@ -163,6 +165,7 @@ class _Exporter:
         def chosen(numbers: array[int]) -> UIntArray | None:
             return np.frombuffer(numbers, np.uint32)[members] if numbers else None
 
+        random = chosen(self._random) if self._materials.asks_random else None
         return InstanceData(
             mesh=shape,
             name=self._data.meshes[shape].name,
@@ -170,11 +173,9 @@ class _Exporter:
             object_index=np.array([e.object_index for e in self._entries], np.uint32)[own],
             mask=chosen(self._masks),
             flags=chosen(self._flags),
-            material_slots=(
-                None if self._materials is None
-                else np.array([e.slots for e in self._entries], np.uint32)[own]
-            ),
-        )  # fmt: skip
+            material_slots=np.array([e.slots for e in self._entries], np.uint32)[own],
+            random=None if random is None else (random / np.float64(2**32 - 1)).astype(np.float32),
+        )
 
 
 def _object_data(original: Any) -> ObjectData:
@@ -182,5 +183,6 @@ def _object_data(original: Any) -> ObjectData:
     while root.parent is not None:
         root = root.parent
     return ObjectData(
-        name_of(original), original.pass_index, name_of(root), *compat.shadow_terminator(original)
-    )
+        name_of(original), original.pass_index, name_of(root),
+        *compat.shadow_terminator(original), tuple(original.color),
+    )  # fmt: skip

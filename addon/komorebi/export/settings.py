@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from .. import compat
-from ..denoise.run import GUIDE
+from ..denoise.run import GUIDES
 from ..passes import Pass, sources
 
 # An odd multiplier far from any pattern (2³² / golden ratio): neighbouring frames get seeds that
@@ -22,6 +22,13 @@ def layer_samples(scene: Any, view_layer: Any) -> int:
     if own == 0 or rule == "IGNORE":
         return of_scene
     return min(own, of_scene) if rule == "BOUNDED" else own
+
+
+def bounces(settings: Any) -> int:
+    """How often light goes from surface to surface: each method has its own."""
+    if settings.method == "AMBIENT_OCCLUSION":
+        return int(settings.ao_indirect_bounces)
+    return int(settings.bounces)
 
 
 def export_settings(
@@ -48,6 +55,9 @@ def export_settings(
         "ao_distance": settings.ao_distance,
         "ao_sampling": settings.ao_sampling,
         "clay_color": tuple(settings.clay_color),
+        "bounces": bounces(settings),
+        "sample_clamp_direct": settings.sample_clamp_direct,
+        "sample_clamp_indirect": settings.sample_clamp_indirect,
         "environment_sampling": settings.environment_sampling,
         "pixel_filter": settings.pixel_filter,
         "filter_width": settings.filter_width,
@@ -56,7 +66,7 @@ def export_settings(
         # With -t on the command line Blender answers FIXED and that number.
         "threads": render.threads if render.threads_mode == "FIXED" else 0,
         "region": region,
-        "passes": sources(passes, *([GUIDE] if settings.use_denoising else [])),
+        "passes": sources(passes, *(GUIDES if settings.use_denoising else ())),
     }
     if mist is not None:
         exported |= {

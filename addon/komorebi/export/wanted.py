@@ -1,9 +1,14 @@
-"""What the passes of a render have to know of the scene."""
+"""What passes and materials have to know of the scene."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
+from typing import Any
+
+
+def _none(_: Any) -> frozenset[str]:
+    return frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -11,11 +16,10 @@ class Wanted:
     """What is exported besides what light needs."""
 
     uvs: bool = False
-    materials: bool = False
+    # The names of attributes (export/attributes.py) that an evaluated object's materials ask for.
+    attributes_of: Callable[[Any], frozenset[str]] = _none
 
     @staticmethod
     def by(sources: Collection[str]) -> Wanted:
         """For the core's passes that are kept."""
-        of_materials = ("Material Index", "Material Value", "CryptoMaterial")
-        materials = any(s.startswith(of_materials) for s in sources)
-        return Wanted(uvs="UV" in sources, materials=materials)
+        return Wanted(uvs="UV" in sources)

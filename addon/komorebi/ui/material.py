@@ -31,7 +31,9 @@ class KOMOREBI_MATERIAL_PT_settings(MaterialPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Any) -> None:
-        self.column().prop(context.material, "pass_index")
+        column = self.column()
+        column.prop(context.material, "pass_index")
+        column.prop(context.material.komorebi, "exclude_from_clay")
 
 
 CLASSES = (KOMOREBI_MATERIAL_PT_surface, KOMOREBI_MATERIAL_PT_settings)

@@ -79,6 +79,7 @@ class KOMOREBI_RENDER_PT_sampling_advanced(KomorebiPanel, bpy.types.Panel):
         sub = column.column()
         sub.active = settings.method == "WORLD_LIGHT"
         sub.prop(settings, "environment_sampling")
+        sub.prop(settings, "world_resolution")
         column.prop(settings, "use_progressive")
         of_cycles = cycles(context.scene)
         if of_cycles is not None and any(layer.samples for layer in context.scene.view_layers):
@@ -95,18 +96,23 @@ class KOMOREBI_RENDER_PT_ambient_occlusion(KomorebiPanel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         column = self.column()
         column.prop(context.scene.komorebi, "ao_distance")
+        column.prop(context.scene.komorebi, "ao_indirect_bounces")
         column.prop(context.scene.komorebi, "ao_sampling")
 
 
 class KOMOREBI_RENDER_PT_surface(KomorebiPanel, bpy.types.Panel):
     bl_label = "Surface"
 
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        return super().poll(context) and context.scene.komorebi.method == "WORLD_LIGHT"
-
     def draw(self, context: Any) -> None:
-        self.column().prop(context.scene.komorebi, "clay_color", text="Color")
+        settings = context.scene.komorebi
+        self.column().row().prop(settings, "surface", expand=True)
+        if settings.surface == "CLAY":
+            column = self.column()
+            sub = column.column()
+            sub.active = settings.method == "WORLD_LIGHT"
+            sub.prop(settings, "clay_color", text="Color")
+            column.prop(settings, "clay_glass", text="Glass")
+            column.prop(settings, "clay_bump")
 
 
 def draw_method(self: Any, context: Any) -> None:

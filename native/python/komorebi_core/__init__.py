@@ -14,6 +14,8 @@ from ._komorebi import (
     Scene,
     Session,
     Settings,
+    SurfaceProgram,
+    Texture,
     __version__,
     build_info,
     choose_builder,
@@ -22,6 +24,9 @@ from ._komorebi import (
     force_instruction_set,
     has_op,
     known_passes,
+    sky_numbers,
+    sky_sun,
+    sky_table,
 )
 
 __all__ = [
@@ -34,6 +39,8 @@ __all__ = [
     "Scene",
     "Session",
     "Settings",
+    "SurfaceProgram",
+    "Texture",
     "__version__",
     "build_info",
     "choose_builder",
@@ -42,4 +49,7 @@ __all__ = [
     "force_instruction_set",
     "has_op",
     "known_passes",
+    "sky_numbers",
+    "sky_sun",
+    "sky_table",
 ]

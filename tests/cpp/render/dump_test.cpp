@@ -56,6 +56,9 @@ class Dump : public ::testing::Test {
     s.method = Method::kWorldLight;
     s.samples = 4;
     s.clay_color = Vec3(0.7f, 0.6f, 0.5f);
+    s.bounces = 2;
+    s.sample_clamp_direct = 3.0f;
+    s.sample_clamp_indirect = 0.25f;
     s.has_region = true;
     s.region = {2, 3, 38, 27};
     return s;

@@ -48,16 +48,22 @@ class Ray:
 class Compiler:
     """Compiles sockets of one tree for one kind of ray into one Builder."""
 
-    def __init__(self, engine: Any, owner: str, ray: Ray, *, is_world: bool = False) -> None:
+    def __init__(
+        self, engine: Any, owner: str, ray: Ray, *, is_world: bool = False, frame: int = 1
+    ) -> None:
         self.builder = Builder()
         self.ray = ray
         self.is_world = is_world
+        self.frame = frame  # of the scene, for sequences of pictures
         self.owner = owner  # how warnings begin: world "World"
         self.map_size = 0  # columns of the largest environment map
-        # [3, 4] rows of the matrix into the camera's space (right, up, depth), where it is known
+        # [3, 4] rows of the matrix into the camera's space (right, up, depth; a
+        # panorama's: depth, left, up), where it is known
         self.camera_from_world: Any = None
         # what is compiled for a point aside: "dx" or "dy", and how many such steps
         self.shift: tuple[str, Value] | None = None
+        self.notes: set[str] = set()  # what is rendered as something simpler, by design
+        self.suns: list[Any] = []  # nodes_sky.SkySun: discs that a map of the world leaves out
         self._engine = engine
         self._groups: tuple[Any, ...] = ()  # group nodes that we are inside of, the outermost first
         self._done: dict[tuple[Any, ...], Outputs] = {}
@@ -68,6 +74,10 @@ class Compiler:
     def warn(self, node: Any, what: str) -> None:
         label = node.bl_label or node.type
         reporting.warn(self._engine, f'{self.owner}, node "{name_of(node)}" ({label}): {what}')
+
+    def note(self, what: str) -> None:
+        """For the statistics, not a warning: the engine means to render it as something simpler."""
+        self.notes.add(what)
 
     def is_linked(self, socket: Any) -> bool:
         return self._source(socket) is not None
@@ -187,7 +197,7 @@ class Compiler:
         return outputs
 
     def _unknown(self, node: Any) -> Outputs:
-        """A node that nobody knows passes on its first input of the same type, or all its shaders."""
+        """A node that nobody knows passes on an input of the same type, or all its shaders."""
         outputs: Outputs = {}
         for socket in node.outputs:
             if socket.type == "SHADER":

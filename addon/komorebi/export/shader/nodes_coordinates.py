@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ... import compat
 from ..mapping import euler_matrix
 from .compiler import Compiler, Outputs, node
 from .values import Value
@@ -84,7 +85,9 @@ def vector_input(compiler: Compiler, node: Any) -> Value:
 def normal_input(compiler: Compiler, node: Any) -> Value:
     """The input Normal; the surface's own where nothing is linked."""
     socket = node.inputs["Normal"]
-    return compiler.value(socket) if compiler.is_linked(socket) else compiler.builder.input("normal")
+    if compiler.is_linked(socket):
+        return compiler.value(socket)
+    return compiler.builder.input("normal")
 
 
 def _matrix(matrix: Any) -> tuple[float, ...]:
@@ -110,7 +113,7 @@ def texture_coordinate(compiler: Compiler, node: Any) -> Outputs:
         "Normal": normal if compiler.is_world else b.input("object_normal"),
         "UV": attribute(compiler, "uv:")[:3],
         "Object": point,
-        "Camera": b.input("camera"),
+        "Camera": _in_camera(compiler, is_point=False),
         "Window": b.input("window"),
         "Reflection": mirrored,
     }
@@ -185,7 +188,7 @@ def object_info(compiler: Compiler, _node: Any) -> Outputs:
 @node("CAMERA")
 def camera_data(compiler: Compiler, _node: Any) -> Outputs:
     b = compiler.builder
-    place = b.input("camera")
+    place = _in_camera(compiler, is_point=True)
     return {
         "View Vector": b.op("normalize", place, 3),
         "View Z Depth": place[2:],
@@ -244,26 +247,32 @@ def vector_rotate(compiler: Compiler, node: Any) -> Outputs:
 def vector_transform(compiler: Compiler, node: Any) -> Outputs:
     b = compiler.builder
     vector = compiler.value(node.inputs[0])
-    is_point = node.vector_type == "POINT"
+    is_point, is_normal = (node.vector_type == kind for kind in ("POINT", "NORMAL"))
     source, target = node.convert_from, node.convert_to
     if "CAMERA" in (source, target) and source != target and compiler.camera_from_world is None:
         compiler.warn(node, "the camera is not known here, its space is taken as the world's")
-    if source != target:
-        if source == "OBJECT" and not compiler.is_world:
-            vector = b.op("from_axes", vector + axes(compiler), 3)
-            if is_point:
-                vector = b.add(vector, b.input("object_location"))
-        elif source == "CAMERA":
-            vector = _by_camera(compiler, vector, is_point, back=True)
-        if target == "OBJECT" and not compiler.is_world:
-            if is_point:
-                vector = b.subtract(vector, b.input("object_location"))
-            vector = b.op("to_axes", vector + axes(compiler), 3)
-        elif target == "CAMERA" and (source == "WORLD" or not compiler.is_world):
-            vector = _by_camera(compiler, vector, is_point, back=False)
-    if node.vector_type == "NORMAL":
-        vector = b.op("normalize", vector, 3)
-    return {node.outputs[0].identifier: vector}
+    if source == target:
+        if is_normal and compat.NORMALS_AS_DIRECTIONS:
+            vector = b.op("normalize", vector, 3)
+        return {node.outputs[0].identifier: vector}
+    by_transpose = is_normal and not compat.NORMALS_AS_DIRECTIONS
+    moved = vector
+    if source == "CAMERA":
+        moved = _by_camera(compiler, moved, is_point, back=True)
+    elif source == "OBJECT" and not compiler.is_world:
+        back = "normal_from_axes" if by_transpose else "from_axes"
+        moved = b.op(back, moved + axes(compiler), 3)
+        if is_point:
+            moved = b.add(moved, b.input("object_location"))
+    if target == "CAMERA":
+        moved = _by_camera(compiler, moved, is_point, back=False)
+    elif target == "OBJECT" and not compiler.is_world:
+        if is_point:
+            moved = b.subtract(moved, b.input("object_location"))
+        moved = b.op("normal_to_axes" if by_transpose else "to_axes", moved + axes(compiler), 3)
+    if is_normal and (moved is not vector or compat.NORMALS_AS_DIRECTIONS):
+        moved = b.op("normalize", moved, 3)
+    return {node.outputs[0].identifier: moved}
 
 
 def _by_camera(compiler: Compiler, vector: Value, is_point: bool, *, back: bool) -> Value:
@@ -276,6 +285,13 @@ def _by_camera(compiler: Compiler, vector: Value, is_point: bool, *, back: bool)
     if not is_point:
         matrix[:3, 3] = 0.0
     return compiler.builder.op("transform", vector, 3, numbers=_matrix(matrix))
+
+
+def _in_camera(compiler: Compiler, *, is_point: bool) -> Value:
+    """Where the camera has the point; of a world the direction, or what lies at its end."""
+    if compiler.is_world and compiler.camera_from_world is not None:
+        return _by_camera(compiler, position(compiler), is_point, back=False)
+    return compiler.builder.input("camera")
 
 
 @node("NORMAL")

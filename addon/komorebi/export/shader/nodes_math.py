@@ -19,10 +19,11 @@ _OPERATIONS = {
 _ARITY = {name: count for count, names in _OPERATIONS.items() for name in names.split()}
 _SCALED = {"RADIANS": math.pi / 180.0, "DEGREES": 180.0 / math.pi}
 # Those of Vector Math that go component by component.
-_BY_COMPONENT = set(
-    "ADD SUBTRACT MULTIPLY DIVIDE MULTIPLY_ADD ABSOLUTE MINIMUM MAXIMUM FLOOR CEIL MODULO WRAP "
-    "SNAP SINE COSINE TANGENT POWER SIGN ROUND".split()
-)
+_BY_COMPONENT = {
+    "ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "MULTIPLY_ADD", "ABSOLUTE", "MINIMUM", "MAXIMUM",
+    "FLOOR", "CEIL", "MODULO", "WRAP", "SNAP", "SINE", "COSINE", "TANGENT", "POWER", "SIGN",
+    "ROUND"
+}  # fmt: skip
 
 
 def operate(b: Builder, operation: str, inputs: list[Value]) -> Value | None:

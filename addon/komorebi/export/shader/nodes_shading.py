@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ... import compat
 from .closures import BLACK
 from .compiler import Compiler, Outputs, node
 from .nodes_coordinates import attribute, axes, normal_input
@@ -14,9 +15,7 @@ ONE: Value = (1.0,)
 
 
 def _cosine(compiler: Compiler, node: Any) -> Value:
-    return compiler.builder.dot(
-        compiler.builder.input("incoming"), normal_input(compiler, node)
-    )
+    return compiler.builder.dot(compiler.builder.input("incoming"), normal_input(compiler, node))
 
 
 def _across(b: Builder, ior: Value, *, inverted: bool) -> Value:
@@ -67,12 +66,19 @@ def _side(b: Builder) -> Value:
     return b.each("multiply_add", b.input("backfacing", 1), (-2.0,), ONE)
 
 
+def _leaning(b: Builder, own: Value, mapped: Value, strength: Value) -> Value:
+    """A normal between the surface's own and the mapped one, or beyond."""
+    turn = b.each("maximum", strength, (0.0,))
+    return b.op("normalize", b.mix(turn, own, mapped), 3)
+
+
 @node("NORMAL_MAP")
 def normal_map(compiler: Compiler, node: Any) -> Outputs:
     b, space = compiler.builder, node.space
     strength, color = compiler.inputs(node, "Strength", "Color")
     own = b.input("normal")
-    x, y, z = ((c,) for c in b.each("multiply_add", color, (2.0,), (-1.0,)))
+    parts = b.each("multiply_add", color, (2.0,), (-1.0,))
+    x, y, z = parts[:1], parts[1:2], parts[2:]
     if compiler.is_world:
         return {node.outputs[0].identifier: own}
     if space == "TANGENT":
@@ -81,8 +87,9 @@ def normal_map(compiler: Compiler, node: Any) -> Outputs:
         normal = b.multiply(_side(b), b.input("object_normal"))
         tangent, sign = frame[:3], frame[3:]
         bitangent = b.multiply(sign, b.op("cross_product", normal + tangent, 3))
-        x, y = b.multiply(x, strength), b.multiply(y, strength)
-        z = b.mix(b.clamp01(strength), ONE, z)
+        if not compat.FLAT_NORMAL_MAPS:
+            x, y = b.multiply(x, strength), b.multiply(y, strength)
+            z = b.mix(b.clamp01(strength), ONE, z)
         mapped = b.add(
             b.add(b.multiply(x, tangent), b.multiply(y, bitangent)), b.multiply(z, normal)
         )
@@ -91,6 +98,8 @@ def normal_map(compiler: Compiler, node: Any) -> Outputs:
         mapped = b.op("normal_from_axes", mapped + axes(compiler), 3)
         mapped = b.multiply(_side(b), b.op("normalize", mapped, 3))
         mapped = b.multiply(b.each("greater_than", known, (0.0,)), mapped)
+        if compat.FLAT_NORMAL_MAPS:
+            mapped = _leaning(b, own, mapped, strength)
     else:
         if space.startswith("BLENDER_"):
             y, z = b.multiply(y, (-1.0,)), b.multiply(z, (-1.0,))
@@ -98,8 +107,7 @@ def normal_map(compiler: Compiler, node: Any) -> Outputs:
         if space.endswith("OBJECT"):
             mapped = b.op("normal_from_axes", mapped + axes(compiler), 3)
         mapped = b.multiply(_side(b), b.op("normalize", mapped, 3))
-        turn = b.each("maximum", strength, (0.0,))
-        mapped = b.op("normalize", b.mix(turn, own, mapped), 3)
+        mapped = _leaning(b, own, mapped, strength)
     return {node.outputs[0].identifier: b.op("or_normal", mapped + own, 3)}
 
 

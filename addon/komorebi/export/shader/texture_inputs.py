@@ -9,7 +9,7 @@ from .nodes_coordinates import default_vector
 from .values import Value
 
 # Where a texture's own mapping, which no panel shows, leaves coordinates as they are.
-_NO_MAPPING = {
+_NO_MAPPING: dict[str, Any] = {
     "translation": (0.0, 0.0, 0.0), "rotation": (0.0, 0.0, 0.0),
     "scale": (1.0, 1.0, 1.0), "mapping_x": "X", "mapping_y": "Y", "mapping_z": "Z",
     "use_min": False, "use_max": False,

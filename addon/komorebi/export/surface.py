@@ -1,0 +1,127 @@
+"""A material's nodes → what the core needs to know of its surface, for each kind of ray."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from .. import compat
+from ..scene_data import Lobe, ProgramData, SurfaceData, SurfacePrograms, Value
+from . import nodes
+from .names import name_of
+from .shader import Compiler, Ray
+from .shader.closures import BLACK, Closures, total
+from .shader.values import Builder
+
+MOST_LOBES = 4  # of a surface; each has a normal of its own
+WHITE: Value = (1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """How a render shows surfaces: the scene's settings, as far as materials heed them."""
+
+    clay: tuple[float, float, float] | None  # the one colour of all; None: materials have theirs
+    keeps_bump: bool = True
+    skips_glass: bool = True
+    has_light: bool = True  # False for ambient occlusion, which knows no colour and no lamps
+
+
+def look_of(scene: Any) -> Look:
+    """What the settings of a scene say."""
+    settings = scene.komorebi
+    is_light = settings.method == "WORLD_LIGHT"
+    color = tuple(settings.clay_color) if is_light else (1.0, 1.0, 1.0)
+    if settings.surface == "MATERIAL":
+        return Look(None, has_light=is_light)
+    return Look(color, settings.clay_bump, settings.clay_glass == "SKIP", is_light)
+
+
+def export_surface(engine: Any, material: Any | None, look: Look, frame: int = 1) -> SurfaceData:
+    """The programs of a material, and what of it is rendered as something else."""
+    if material is None:
+        return SurfaceData(_even((0.8, 0.8, 0.8), look))
+    if look.clay is not None and material.komorebi.exclude_from_clay:
+        look = Look(None, has_light=look.has_light)
+    tree = compat.shader_nodes(material)
+    if tree is None:
+        color = material.diffuse_color
+        return SurfaceData(_even((color[0], color[1], color[2]), look))
+    output = nodes.material_output(tree)
+    if output is None:
+        return SurfaceData(_even((0.0, 0.0, 0.0), look))
+    owner = f'material "{name_of(material)}"'
+    compilers = {
+        kind: Compiler(engine, owner, Ray(kind), frame=frame) for kind in ("CAMERA", "DIFFUSE")
+    }
+    camera, bounce = (_surface(c, output, look) for c in compilers.values())
+    shadow = Compiler(engine, owner, Ray("SHADOW"), frame=frame)
+    clear = _transparency(shadow, _closures(shadow, output), look)
+    return SurfaceData(
+        camera,
+        None if bounce.program.key() == camera.program.key() else bounce,
+        ProgramData(owner, shadow.builder.ops, clear) if any(clear) else None,
+        compilers["CAMERA"].notes if look.clay is None else set(),
+    )
+
+
+def _even(color: Value, look: Look) -> SurfacePrograms:
+    shown = color if look.clay is None else look.clay
+    outputs = (*BLACK, *BLACK, 0.0, *shown)
+    return SurfacePrograms(ProgramData("surface", [], outputs), (Lobe(False, False),))
+
+
+def _closures(compiler: Compiler, output: Any) -> Closures | None:
+    """What reaches the surface; None if there is nothing but a volume, which is not solid."""
+    socket = output.inputs["Surface"]
+    if not compiler.is_linked(socket) and nodes.source(output.inputs["Volume"]) is not None:
+        return None
+    return compiler.closures(socket)
+
+
+def _transparency(compiler: Compiler, closures: Closures | None, look: Look) -> Value:
+    if closures is None:
+        return WHITE
+    b = compiler.builder
+    clear = total(b, closures, "TRANSPARENT")
+    return b.add(clear, total(b, closures, "GLASS")) if look.skips_glass else clear
+
+
+def _surface(compiler: Compiler, output: Any, look: Look) -> SurfacePrograms:
+    b = compiler.builder
+    closures = _closures(compiler, output)
+    clear = _transparency(compiler, closures, look)
+    hole = total(b, closures or (), "HOLDOUT")[:1]
+    emission = BLACK
+    if look.clay is None and look.has_light:
+        emission = total(b, closures or (), "EMISSION")
+    lobes = _lobes(compiler, closures or (), look)
+    if look.clay is not None or not look.has_light:
+        solid = b.subtract((1.0,), b.add(clear, hole))
+        color = look.clay if look.clay is not None else WHITE
+        normal = next((n for (transmits, n) in lobes if not transmits), None)
+        lobes = {(False, normal): b.multiply(solid, color)}
+    outputs = (*emission, *clear, *hole)
+    kinds = []
+    for (transmits, normal), weight in lobes.items():
+        outputs += weight if normal is None else (*weight, *normal)
+        kinds.append(Lobe(transmits, normal is not None))
+    return SurfacePrograms(ProgramData(compiler.owner, b.ops, outputs), tuple(kinds))
+
+
+def _lobes(
+    compiler: Compiler, closures: Closures, look: Look
+) -> dict[tuple[bool, Value | None], Value]:
+    """Weights by side and normal: what agrees in both adds up."""
+    b: Builder = compiler.builder
+    lobes: dict[tuple[bool, Value | None], Value] = {}
+    for closure in closures:
+        if closure.kind not in {"DIFFUSE", "TRANSLUCENT"}:
+            continue
+        normal = closure.normal if look.keeps_bump else None
+        key = (closure.kind == "TRANSLUCENT", normal)
+        if key not in lobes and len(lobes) == MOST_LOBES:
+            key = next((k for k in lobes if k[0] == key[0]), next(iter(lobes)))
+            compiler.note(f"more than {MOST_LOBES} normals of one surface")
+        lobes[key] = b.add(lobes.get(key, BLACK), closure.weight)
+    return lobes

@@ -1,0 +1,37 @@
+"""SurfaceData → what the core's Scene.set_surfaces takes. No bpy."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Any
+
+from .native_programs import Programs
+from .scene_data import Materials, SurfaceData, SurfacePrograms
+
+
+def surfaces(programs: Programs, materials: Materials) -> list[tuple[Any, Any, Any]]:
+    """Of each material its surface to camera rays, to bounces and to light rays."""
+    return [_surface(programs, m.surface) for m in materials.materials if m.surface is not None]
+
+
+def _surface(programs: Programs, data: SurfaceData) -> tuple[Any, Any, Any]:
+    return (
+        _programs(programs, data.camera),
+        None if data.bounce is None else _programs(programs, data.bounce),
+        None if data.shadow is None else programs.program(data.shadow),
+    )
+
+
+def _programs(programs: Programs, data: SurfacePrograms) -> Any:
+    lobes = [(lobe.transmits, lobe.has_normal) for lobe in data.lobes]
+    return programs.core.SurfaceProgram(programs.program(data.program), lobes)
+
+
+def simplified(materials: Materials) -> str:
+    """What is rendered as something simpler by design, with how many materials it concerns."""
+    notes = Counter(
+        note for m in materials.materials if m.surface is not None for note in m.surface.notes
+    )
+    return ", ".join(
+        f"{what} in {count} material{'' if count == 1 else 's'}" for what, count in notes.items()
+    )

@@ -1,0 +1,95 @@
+#include "render/bounce_tracer.h"
+
+#include <algorithm>
+
+#include "render/shade.h"
+
+namespace komorebi {
+
+BounceTracer::BounceTracer(const RenderContext& context)
+    : context_(context), caster_(later_context(context, 1)) {}
+
+void BounceTracer::clear() {
+  next_rays_.clear();
+  next_states_.clear();
+}
+
+void BounceTracer::begin(const SurfaceBatch& surfaces, std::uint32_t surface, std::uint32_t path,
+                         std::uint32_t pixel_seed, std::uint32_t sample) {
+  leave(0, surfaces, surface, {path, pixel_seed, sample, surfaces.albedo(surface)});
+}
+
+void BounceTracer::leave(std::uint32_t vertex, const SurfaceBatch& surfaces, std::uint32_t surface,
+                         State state) {
+  ScatterPoint point;
+  point.normal = surfaces.normal(surface);
+  point.geometric_normal = surfaces.geometric_normal(surface);
+  point.origin = surfaces.leaving_origin(surface);
+  if (context_.has_terminators) point.frequency = surfaces.frequency(surface);
+  point.time = surfaces.time(surface);
+  point.instance = surfaces.instance(surface);
+  point.primitive = surfaces.primitive(surface);
+  const Sampler sampler(state.pixel_seed);
+  Ray ray;
+  if (!scatter(context_, vertex, point, sampler, state.sample, state.throughput, ray)) return;
+  next_rays_.push(ray);
+  next_states_.push_back(state);
+}
+
+/// The rays that left the last surfaces are those to be traced now.
+void BounceTracer::take_next() {
+  const RaySpan next = next_rays_.span();
+  rays_.clear();
+  states_.clear();
+  for (const std::uint32_t i : order_.sort(next)) {
+    rays_.push(next[i]);
+    states_.push_back(next_states_[i]);
+  }
+  clear();
+}
+
+bool BounceTracer::find_surfaces(std::uint32_t vertex, const Cancel& cancel) {
+  const RaySpan rays = rays_.span();
+  hits_.resize(rays.count);
+  intersect(context_.scene, rays, hits_.data());
+  ray_count_ += rays.count;
+  surfaces_.clear(rays.count);
+  for (std::uint32_t i = 0; i < rays.count; ++i) {
+    if (!hits_[i].valid()) continue;
+    const State& state = states_[i];
+    surfaces_.push(i, hits_[i], rays.time[i], state.pixel_seed, state.sample * kLaterLightSamples);
+  }
+  surfaces_.fill(context_, hits_.data(), rays);
+  shader_.shade(context_, vertex, hits_.data(), rays, kLaterLightSamples, surfaces_);
+  light_.assign(surfaces_.size(), Vec3(0.0f));
+  caster_.set_light_dimension(vertex_dimension(vertex, kVertexLightDirection));
+  const std::uint32_t size = caster_.block_size();
+  for (std::uint32_t begin = 0; begin < surfaces_.size(); begin += size) {
+    if (cancel.raised()) return false;
+    caster_.cast(surfaces_, begin, std::min(surfaces_.size(), begin + size),
+                 [&](std::uint32_t s, const Vec3&, const Vec3& contribution, bool visible) {
+                   if (visible) light_[s] += contribution;
+                 });
+  }
+  return true;
+}
+
+bool BounceTracer::trace(const Cancel& cancel,
+                         FunctionRef<void(std::uint32_t path, const Vec3& light)> visit) {
+  for (std::uint32_t vertex = 1; !next_states_.empty(); ++vertex) {
+    take_next();
+    if (!find_surfaces(vertex, cancel)) return false;
+    for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
+      State state = states_[surfaces_.path(s)];
+      const Shading shading = surfaces_.shading(s);
+      const Vec3 light = light_[s] / static_cast<float>(kLaterLightSamples);
+      visit(state.path, indirect_light(context_, vertex, state.throughput, shading, light));
+      if (vertex == context_.bounces) continue;
+      state.throughput *= shading.albedo;
+      leave(vertex, surfaces_, s, state);
+    }
+  }
+  return true;
+}
+
+}  // namespace komorebi

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <vector>
+
+#include "parallel/cancel.h"
+#include "parallel/function_ref.h"
+#include "render/light_caster.h"
+#include "render/ray_batch.h"
+#include "render/ray_order.h"
+#include "render/scatter.h"
+#include "render/shade.h"
+
+namespace komorebi {
+
+/// Follows the paths of a batch from the surfaces that the camera sees to those that light them,
+/// all of them together, vertex by vertex. Its arrays grow once.
+class BounceTracer {
+ public:
+  explicit BounceTracer(const RenderContext& context);
+
+  /// Forgets what was begun.
+  void clear();
+  /// Lets a path go on from a surface in view, shaded; `path` is the caller's word for it.
+  void begin(const SurfaceBatch& surfaces, std::uint32_t surface, std::uint32_t path,
+             std::uint32_t pixel_seed, std::uint32_t sample);
+  /// Follows all that was begun; visit(path, light) is told what each vertex brings to the pixel, a
+  /// path's in their order. False when cancelled on the way.
+  bool trace(const Cancel& cancel, FunctionRef<void(std::uint32_t path, const Vec3& light)> visit);
+
+  std::uint64_t ray_count() const { return ray_count_ + caster_.ray_count(); }
+
+ private:
+  /// A path on its way from one vertex to the next.
+  struct State {
+    std::uint32_t path, pixel_seed, sample;
+    Vec3 throughput;
+  };
+
+  void leave(std::uint32_t vertex, const SurfaceBatch& surfaces, std::uint32_t surface,
+             State state);
+  void take_next();
+  bool find_surfaces(std::uint32_t vertex, const Cancel& cancel);
+
+  RenderContext context_;
+  LightCaster caster_;
+  RayBatch rays_, next_rays_;
+  std::vector<State> states_, next_states_;  // of each ray
+  RayOrder order_;
+  std::vector<Hit> hits_;
+  SurfaceBatch surfaces_;
+  BatchShader shader_;
+  std::vector<Vec3> light_;  // mean of the light rays of each surface
+  std::uint64_t ray_count_ = 0;
+};
+
+}  // namespace komorebi

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+
+#include "render/material.h"
+#include "render/material_points.h"
+
+namespace komorebi {
+
+/// Runs materials at hits; one a thread. What it says of a hit depends on that hit alone.
+class MaterialShader {
+ public:
+  /// The shading of hits that were not let through, each for its own path; their points become
+  /// those of the lobes that were chosen. Hits of one material that follow each other run together.
+  void shade(const RenderContext& context, std::span<ShadeTask> tasks, Shading* shadings);
+
+  /// How much of the rays that meet a hit goes straight through.
+  /// @param to_light  of rays that look for light, else of those that look at surfaces
+  float clear_share_of(const RenderContext& context, const ShadeTask& task, bool to_light);
+
+ private:
+  void run(const RenderContext& context, const Program& program, const ShadeTask* tasks,
+           std::uint32_t count);
+
+  MaterialPoints points_;
+  Program::Scratch scratch_;
+  std::vector<float> results_;  // [outputs][kLanes]
+  std::vector<float*> rows_;
+};
+
+}  // namespace komorebi

@@ -1,0 +1,58 @@
+#include "render/scatter.h"
+
+#include <cmath>
+
+#include "core/path_key.h"
+#include "core/terminator.h"
+#include "core/warp.h"
+#include "render/shade.h"
+
+namespace komorebi {
+
+bool scatter(const RenderContext& context, std::uint32_t vertex, const ScatterPoint& point,
+             const Sampler& sampler, std::uint32_t sample, Vec3& throughput, Ray& ray) {
+  const float most = glm::max(glm::max(throughput.x, throughput.y), throughput.z);
+  if (!(most > 0.0f)) return false;
+  if (vertex >= kSureScatters) {
+    // The root: paths live longer than their share of the light, as in Cycles.
+    const float survival = glm::min(std::sqrt(most), 1.0f);
+    const float u = sampler.sample_1d(vertex_dimension(vertex, kVertexRoulette), sample);
+    if (!(u < survival)) return false;
+    throughput /= survival;
+  }
+  const Vec2 u = sampler.sample_2d(vertex_dimension(vertex, kVertexScatter), sample);
+  ray.direction = make_frame(point.normal).to_world(cosine_hemisphere_disk(u));
+  if (!(glm::dot(ray.direction, point.geometric_normal) > 0.0f)) return false;
+  if (context.cuts_cosines && point.frequency > 1.0f) {
+    const float cosine = glm::dot(ray.direction, point.normal);
+    if (!(cosine > 0.0f)) return false;
+    throughput *= cosine_left(point.frequency, cosine);
+  }
+  ray.origin = point.origin;
+  ray.t_min = 0.0f;
+  ray.t_max = context.light_distance;  // beyond, there is nothing but sky
+  ray.time = point.time;
+  ray.mask = context.scatter_mask;
+  ray.self_instance = point.instance;
+  ray.self_primitive = point.primitive;
+  ray.path_key = path_key(sampler.pixel_seed, vertex_dimension(vertex, kVertexScatter), sample);
+  return true;
+}
+
+RenderContext later_context(const RenderContext& given, std::uint32_t vertex) {
+  RenderContext context = given;
+  context.albedo = lit_albedo(given, vertex);
+  context.light_samples = kLaterLightSamples;
+  context.light_dimension = vertex_dimension(vertex, kVertexLightDirection);
+  return context;
+}
+
+RenderContext alone_context(const RenderContext& given) {
+  RenderContext context = given;
+  context.light_mask <<= kMaskCatcherShift;
+  context.surface_mask <<= kMaskCatcherShift;
+  context.scatter_mask <<= kMaskCatcherShift;
+  return context;
+}
+
+}  // namespace komorebi

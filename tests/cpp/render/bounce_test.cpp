@@ -1,0 +1,221 @@
+// Light that bounces, against formulas and against a path tracer without any of the renderer's
+// shortcuts: no light rays, no roulette, no tree.
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "bvh/traverse.h"
+#include "core/surface_point.h"
+#include "render/batch.h"
+#include "render/one_ray.h"
+#include "support/scenes.h"
+
+namespace komorebi::testing {
+namespace {
+
+constexpr double kPi = glm::pi<double>();
+
+/// A hollow sphere from which a cap is cut off at the top, of rings [cut, n); and the share of its
+/// area that is missing.
+struct Cavity {
+  std::shared_ptr<const Mesh> mesh;
+  double open;
+};
+Cavity cavity(int n, int cut) {
+  Polygons all = sphere(n, Vec3d(0), 1.0, false), rest;
+  rest.vtx2xyz = all.vtx2xyz;
+  const auto first = static_cast<std::size_t>(8 * n * cut);  // corners: 4 of 2n faces a ring
+  rest.corner2vtx.assign(all.corner2vtx.begin() + static_cast<std::ptrdiff_t>(first),
+                         all.corner2vtx.end());
+  for (std::size_t c = 4; c <= rest.corner2vtx.size(); c += 4) {
+    rest.face_offsets.push_back(static_cast<std::int32_t>(c));
+  }
+  return {rest.mesh(), 0.5 - 0.5 * std::cos(kPi * cut / n)};
+}
+
+/// Light in a cavity after k bounces: each sends back what it gets but for what leaves.
+double cavity_light(double albedo, double first_albedo, double open, std::uint32_t k) {
+  double sum = 0.0, share = 1.0;
+  for (std::uint32_t i = 0; i <= k; ++i, share *= albedo * (1.0 - open)) sum += share;
+  return first_albedo * open * sum;
+}
+
+void expect_cavity(Settings settings, double albedo, std::uint32_t bounces) {
+  const Cavity hollow = cavity(64, 16);
+  const auto scene =
+      committed(make_scene({{hollow.mesh}}, camera_at({0.3, 0.1, 0.2}, {0.1, 0.5, -1}, 24, 16)));
+  settings.bounces = bounces;
+  settings.samples = 256;
+  settings.clay_color = Vec3(static_cast<float>(albedo));
+  const Estimate e = estimate(render(scene, settings));
+  const double first = settings.method == Method::kWorldLight ? albedo : 1.0;
+  const double exact = cavity_light(albedo, first, hollow.open, bounces);
+  EXPECT_NEAR(e.mean, exact, 4.0 * e.error + 1e-3 * exact) << bounces << " bounces";
+  EXPECT_LT(e.error, 5e-3 * exact);
+}
+
+TEST(Bounces, InACavityAreAGeometricSeries) {
+  Settings settings;
+  settings.method = Method::kWorldLight;
+  for (const std::uint32_t bounces : {0u, 1u, 2u, 4u, 8u}) expect_cavity(settings, 0.8, bounces);
+}
+
+TEST(Bounces, InACavityComeToALimit) {
+  Settings settings;
+  settings.method = Method::kWorldLight;
+  const double open = cavity(64, 16).open;
+  EXPECT_NEAR(cavity_light(0.8, 0.8, open, 64), 0.8 * open / (1.0 - 0.8 * (1.0 - open)), 1e-9);
+  expect_cavity(settings, 0.8, 64);
+}
+
+TEST(Bounces, OfWhiteClayLoseNothingAndAddNothing) {
+  Settings settings;
+  settings.method = Method::kWorldLight;
+  expect_cavity(settings, 1.0, 3);
+  expect_cavity(settings, 1.0, 256);  // all of the sky comes back
+}
+
+TEST(Bounces, OfAmbientOcclusionBeginAtAWhiteSurface) {
+  Settings settings;
+  for (const std::uint32_t bounces : {0u, 1u, 6u}) expect_cavity(settings, 0.5, bounces);
+}
+
+std::shared_ptr<const Environment> sunny_map() {
+  std::vector<float> texels;
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      const float sun = x == 9 && y == 12 ? 40.0f : 0.0f;
+      texels.insert(texels.end(), {0.1f + 0.02f * static_cast<float>(x) + sun, 0.5f + sun,
+                                   0.05f * static_cast<float>(y) + sun});
+    }
+  }
+  return std::make_shared<Environment>("sunny", 32, 16, std::move(texels));
+}
+
+/// Two walls, a floor, a roof over a part of it and a ball between them; the roof is not there for
+/// shadow rays, if asked for.
+std::shared_ptr<Scene> corner(bool split = false) {
+  const auto floor = quad({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}).mesh();
+  const auto wall = quad({-2, 2, 0}, {4, 0, 0}, {0, 0, 3}).mesh();
+  const auto side = quad({-2, -2, 0}, {0, 4, 0}, {0, 0, 3}).mesh();
+  const auto roof = quad({-2, 0, 2.5}, {4, 0, 0}, {0, 2, 0}).mesh();
+  const auto ball = sphere(12, {-0.6, 0.8, 0.6}, 0.6, false).mesh();
+  auto scene = std::make_shared<Scene>();
+  for (const auto& mesh : {floor, wall, side, ball, roof}) {
+    const std::uint32_t mask = mesh == roof && split ? kMaskAll & ~kMaskShadow : kMaskAll;
+    const InstanceInput instance{scene->add_mesh(mesh), Mat4d(1.0), 0, mask, 0};
+    scene->add_instances({&instance, 1}, "test");
+  }
+  scene->set_world_environment(sunny_map(), 0.7, Mat3d(1.0));
+  scene->set_camera(probe_at({-1.2, 1.5, 0}, {0, 0, 1}, 0.05));
+  return committed(scene);
+}
+
+/// The mean radiance of the probe's patch by paths that are scattered evenly over the hemisphere
+/// and bring what they find when they leave, and its standard error.
+Estimate traced_by_brute_force(const Scene& scene, const Vec3& albedo, std::uint32_t bounces) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  constexpr int kPaths = 400000;
+  const EnvironmentView sky = scene.environment();
+  double sum = 0.0, squares = 0.0;
+  for (int i = 0; i < kPaths; ++i) {
+    Ray ray;
+    ray.origin = Vec3(static_cast<float>(-1.25 + 0.1 * unit(random)),
+                      static_cast<float>(1.45 + 0.1 * unit(random)), 0.1f);
+    ray.origin = Vec3(Vec3d(ray.origin) - scene.origin());
+    ray.direction = Vec3(0, 0, -1);
+    double throughput = 1.0, brought = 0.0;
+    for (std::uint32_t vertex = 0;; ++vertex) {
+      const Hit hit = intersect_brute_force(scene.view(), ray);
+      if (!hit.valid()) {
+        brought = throughput * double{environment_radiance(sky, ray.direction).x};
+        break;
+      }
+      if (vertex == bounces + 1) break;
+      const SurfacePoint point = surface_point(scene.view(), hit, ray);
+      const double z = unit(random), phi = 2.0 * kPi * unit(random), r = std::sqrt(1.0 - z * z);
+      const Vec3d n(point.normal);
+      const Vec3d t = glm::normalize(glm::cross(n, std::abs(n.x) > 0.5 ? Vec3d(0, 1, 0)
+                                                                       : Vec3d(1, 0, 0)));
+      ray = Ray{};
+      ray.origin = leaving_origin(point);
+      ray.direction = Vec3(r * std::cos(phi) * t + r * std::sin(phi) * glm::cross(n, t) + z * n);
+      ray.self_instance = hit.instance;
+      ray.self_primitive = hit.primitive;
+      throughput *= double{albedo.x} * 2.0 * z;
+    }
+    sum += brought;
+    squares += brought * brought;
+  }
+  const double mean = sum / kPaths;
+  return {mean, std::sqrt((squares / kPaths - mean * mean) / kPaths)};
+}
+
+TEST(Bounces, UnderAMapAgreeWithBruteForce) {
+  const auto scene = corner();
+  for (const std::uint32_t bounces : {0u, 1u, 4u}) {
+    Settings settings;
+    settings.method = Method::kWorldLight;
+    settings.clay_color = Vec3(0.8f, 0.3f, 0.1f);
+    settings.sample_clamp_indirect = 0.0f;
+    settings.samples = 512;
+    settings.bounces = bounces;
+    const Estimate truth = traced_by_brute_force(*scene, settings.clay_color, bounces);
+    for (const auto sampling : {EnvironmentSampling::kProduct, EnvironmentSampling::kMis,
+                                EnvironmentSampling::kCosine}) {
+      settings.environment_sampling = sampling;
+      const Estimate e = estimate(render(scene, settings));
+      EXPECT_NEAR(e.mean, truth.mean, 4.0 * std::hypot(e.error, truth.error))
+          << bounces << " bounces";
+      EXPECT_LT(std::hypot(e.error, truth.error), 0.02 * truth.mean);
+    }
+  }
+}
+
+TEST(Bounces, OfSurfacesWithMaterialsAreThoseOfClay) {
+  const auto scene = corner(true);
+  Settings settings;
+  settings.method = Method::kWorldLight;
+  settings.clay_color = Vec3(0.8f, 0.3f, 0.1f);
+  settings.bounces = 3;
+  const FilterTable filter(settings.pixel_filter, settings.filter_width);
+  RenderContext clay = make_context(*scene, settings, filter.view());
+  clay.passes = {};
+  RenderContext materials = clay;
+  materials.has_materials = true;
+  materials.albedo = Vec3(1.0f);
+  const std::vector<PixelPlace> pixels = {{1, 2}, {7, 3}, {12, 12}};
+  constexpr std::uint32_t kCount = 50;
+  std::vector<Vec3> expected(kCount * pixels.size()), found(expected.size());
+  ASSERT_TRUE(BatchIntegrator(clay).sample(pixels, kCount, expected.data(), Cancel()));
+  ASSERT_TRUE(BatchIntegrator(materials).sample(pixels, kCount, found.data(), Cancel()));
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const PixelPlace at = pixels[i / kCount];
+    EXPECT_EQ(found[i], render_sample(materials, at.x, at.y, static_cast<std::uint32_t>(i % kCount), nullptr).radiance);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[i][c], expected[i][c], 1e-5f * expected[i][c]);
+  }
+}
+
+TEST(Bounces, AreClampedByTheMeanOfTheirChannels) {
+  const auto scene = corner();
+  Settings settings;
+  settings.method = Method::kWorldLight;
+  settings.samples = 64;
+  const double direct = estimate(render(scene, settings)).mean;
+  settings.bounces = 1;
+  settings.sample_clamp_indirect = 1e-3f;
+  const double clamped = estimate(render(scene, settings)).mean;
+  EXPECT_GT(clamped, direct + 1e-5);
+  EXPECT_LT(clamped, direct + 3e-3);  // red is at most the sum of three
+  settings.bounces = 0;
+  settings.sample_clamp_direct = 1e-3f;
+  const auto picture = render(scene, settings);
+  for (std::size_t i = 0; i < picture.size(); i += 4) {
+    EXPECT_LE(picture[i] + picture[i + 1] + picture[i + 2], 3.001e-3f);
+  }
+}
+
+}  // namespace
+}  // namespace komorebi::testing
