@@ -20,11 +20,7 @@ LONG_PASS_NAMES = VERSION >= (5, 0, 0)  # "Material Index", not "IndexMA"
 FLAT_NORMAL_MAPS = VERSION < (4, 0, 0)  # strength leans the mapped normal, not the map's colour
 NORMALS_AS_DIRECTIONS = VERSION < (4, 0, 0)  # so the node Vector Transform turned them
 CORNER_NORMALS = VERSION >= (4, 1, 0)  # mesh.corner_normals, no auto smooth
-NOISE_REPEATS = VERSION >= (
-    4,
-    1,
-    0,
-)  # every 100,000 cells, since floats tell few places apart there
+NOISE_REPEATS = VERSION >= (4, 1, 0)  # every 100,000 cells, where floats lose places in a cell
 VORONOI_PCG = VERSION >= (5, 0, 0)  # hashes cells of two dimensions and more
 
 

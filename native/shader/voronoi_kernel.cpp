@@ -69,6 +69,15 @@ KOMOREBI_VORONOI_FUNCTIONS
 constexpr VoronoiKernel kKernel = KOMOREBI_VORONOI_TABLE;
 
 }  // namespace plain
+
+// x^e of x ≥ 0, quick for the exponents that are met most.
+float power(float x, float e) {
+  if (e == 0.5f) return __builtin_sqrtf(x);
+  if (e == 1.0f) return x;
+  if (e == 2.0f) return x * x;
+  return fn::pow(x, e);
+}
+
 }  // namespace
 
 const VoronoiKernel& voronoi_kernel() {
@@ -78,13 +87,13 @@ const VoronoiKernel& voronoi_kernel() {
 void add_powers(const float* a, const float* b, const float* exponent, std::uint32_t count,
                 bool first, float* out) {
   for (std::uint32_t i = 0; i < count; ++i) {
-    const float power = fn::pow(absolute(a[i] - b[i]), exponent[i]);
-    out[i] = first ? power : out[i] + power;
+    const float term = power(absolute(a[i] - b[i]), exponent[i]);
+    out[i] = first ? term : out[i] + term;
   }
 }
 
 void take_roots(const float* exponent, std::uint32_t count, float* x) {
-  for (std::uint32_t i = 0; i < count; ++i) x[i] = fn::pow(x[i], 1.0f / exponent[i]);
+  for (std::uint32_t i = 0; i < count; ++i) x[i] = power(x[i], 1.0f / exponent[i]);
 }
 
 float voronoi_reach(VoronoiMetric metric, std::uint32_t dimensions, float side, float exponent) {
@@ -92,7 +101,7 @@ float voronoi_reach(VoronoiMetric metric, std::uint32_t dimensions, float side, 
   if (dimensions == 1 || metric == VoronoiMetric::kChebychev) return side;
   if (metric == VoronoiMetric::kManhattan) return side * n;
   if (metric == VoronoiMetric::kEuclidean) return __builtin_sqrtf(side * side * n);
-  return fn::pow(fn::pow(side, exponent) * n, 1.0f / exponent);
+  return power(power(side, exponent) * n, 1.0f / exponent);
 }
 
 }  // namespace komorebi

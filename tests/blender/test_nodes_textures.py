@@ -266,8 +266,9 @@ def test_unlinked_vector():
 
 def test_what_is_not_rendered():
     stage = Stage()
-    stage.ours(stage.new("TexPointDensity").outputs["Color"])
-    assert len(stage.warnings) == 1, stage.warnings
+    if has_node("TexPointDensity"):  # until 4.5
+        stage.ours(stage.new("TexPointDensity").outputs["Color"])
+        assert len(stage.warnings) == 1, stage.warnings
     stage.ours(stage.new("TexIES").outputs[0])
     assert len(stage.warnings) == 1, stage.warnings
 
