@@ -17,7 +17,7 @@ inline constexpr std::uint32_t kDimensionsPerVertex = 8;
 /// Within a vertex's block.
 enum VertexDimension : std::uint32_t {
   kVertexLightDirection = 0,  ///< 0–1: direction of a light ray
-  kVertexLightChoice = 2,     ///< which strategy or light; 3 reserved
+  kVertexLamp = 2,            ///< 2–3: which lamp a ray goes to, and where on it
   kVertexScatter = 4,         ///< 4–5: direction of the next bounce
   kVertexAmbient = 6,         ///< 6–7: direction of a ray for ambient occlusion beside light rays
 };

@@ -9,6 +9,7 @@
 
 namespace komorebi {
 class Mesh;
+class Scene;
 }
 
 namespace komorebi::python {
@@ -21,6 +22,9 @@ void bind_session(py::module_& module);
 
 /// Curves and points, which Mesh holds too.
 void bind_round(py::class_<Mesh, std::shared_ptr<Mesh>>& mesh);
+
+/// What Scene has of lamps.
+void bind_lamps(py::class_<Scene, std::shared_ptr<Scene>>& scene);
 
 /// A pool for a build: `threads` of Blender's scene, 0 for one a core. One pool is kept from call
 /// to call, because starting threads costs more than a small mesh's build.

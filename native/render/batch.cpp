@@ -21,6 +21,7 @@ BatchIntegrator::BatchIntegrator(const RenderContext& context)
     : context_(context),
       of_light_(passes_of_light_rays(context)),
       light_caster_(context),
+      lamp_caster_(context),
       has_catchers_(context.passes.keeps(Quantity::kCatcherLight)) {
   for (const AmbientCast& cast : ambient_casts(context)) {
     ambient_.push_back({cast.passes, LightCaster(cast.context)});
@@ -28,7 +29,7 @@ BatchIntegrator::BatchIntegrator(const RenderContext& context)
 }
 
 std::uint64_t BatchIntegrator::ray_count() const {
-  std::uint64_t count = camera_ray_count_ + light_caster_.ray_count();
+  std::uint64_t count = camera_ray_count_ + light_caster_.ray_count() + lamp_caster_.ray_count();
   for (const Ambient& ambient : ambient_) count += ambient.caster.ray_count();
   return count;
 }
@@ -130,6 +131,7 @@ bool BatchIntegrator::light(const Cancel& cancel) {
   for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
     results_[surfaces_.path(s)].radiance /= static_cast<float>(context_.light_samples);
   }
+  if (context_.lamps.count > 0 && !lamp_light(0, cancel)) return false;
   if (context_.passes.size() > 0) finish_passes();
   return !cancel.raised();
 }
@@ -160,6 +162,27 @@ void BatchIntegrator::light_block(std::uint32_t begin, std::uint32_t end) {
       });
 }
 
+bool BatchIntegrator::lamp_light(std::uint32_t vertex, const Cancel& cancel) {
+  const auto catches = [&](std::uint32_t s) {
+    return is_catcher(context_, hits_[surfaces_.path(s)].instance);
+  };
+  if (has_catchers_) lamps_alone_.assign(surfaces_.size(), Vec3(0.0f));
+  const std::uint32_t size = lamp_caster_.block_size();
+  for (std::uint32_t begin = 0; begin < surfaces_.size(); begin += size) {
+    if (cancel.raised()) return false;
+    const std::uint32_t end = std::min(surfaces_.size(), begin + size);
+    lamp_caster_.cast(surfaces_, begin, end, vertex,
+                      [&](std::uint32_t s, const Vec3& contribution, bool visible) {
+                        if (visible) results_[surfaces_.path(s)].radiance += contribution;
+                      });
+    if (!has_catchers_) continue;
+    lamp_caster_.cast_alone(
+        surfaces_, begin, end, catches,
+        [&](std::uint32_t s, const Vec3& contribution) { lamps_alone_[s] += contribution; });
+  }
+  return true;
+}
+
 void BatchIntegrator::ambient_block(const AmbientPasses& passes, LightCaster& caster,
                                     std::uint32_t begin, std::uint32_t end) {
   caster.cast(surfaces_, begin, end,
@@ -182,6 +205,9 @@ void BatchIntegrator::finish_passes() {
       continue;
     }
     layout.divide(row(path), Quantity::kCatcherLight, light_rays);
+    if (context_.lamps.count > 0) {
+      layout.add(row(path), Quantity::kCatcherLight, lamps_alone_[s]);
+    }
     put_environment(context_, rays[path].direction, row(path));
   }
 }

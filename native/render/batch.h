@@ -8,6 +8,7 @@
 #include "render/cells.h"
 #include "render/context.h"
 #include "render/film.h"
+#include "render/lamp_caster.h"
 #include "render/light_caster.h"
 #include "render/ray_batch.h"
 #include "render/surface_batch.h"
@@ -62,6 +63,8 @@ class BatchIntegrator {
   void light_block(std::uint32_t begin, std::uint32_t end);
   void ambient_block(const AmbientPasses& passes, LightCaster& caster, std::uint32_t begin,
                      std::uint32_t end);
+  /// Adds what lamps bring to surfaces at a vertex of their paths.
+  bool lamp_light(std::uint32_t vertex, const Cancel& cancel);
   void finish_passes();
   float* row(std::uint32_t path) { return rows_.data() + context_.passes.size() * path; }
 
@@ -76,6 +79,8 @@ class BatchIntegrator {
   std::vector<float> rows_;  // [paths][context_.passes.size()]
   AmbientPasses of_light_;   // passes that light rays fill
   LightCaster light_caster_;
+  LampCaster lamp_caster_;
+  std::vector<Vec3> lamps_alone_;  // of each surface that is a shadow catcher
   struct Ambient {
     AmbientPasses passes;
     LightCaster caster;

@@ -30,6 +30,11 @@ std::uint32_t light_mask(const Scene& scene, Method method) {
 
 }  // namespace
 
+float max_radiance(const Scene& scene, const Settings& settings) {
+  const bool lamps = settings.method == Method::kWorldLight;
+  return scene.max_radiance() + (lamps ? scene.max_lamp_radiance() : 0.0f);
+}
+
 RenderContext make_context(const Scene& scene, const Settings& settings, const FilterView& filter) {
   const bool ao = settings.method == Method::kAmbientOcclusion;
   RenderContext context;
@@ -38,6 +43,7 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.environment = scene.environment();
   context.sky = ao ? constant_environment(Vec3(1.0f)) : context.environment;
   context.filter = filter;
+  if (!ao) context.lamps = scene.lamps().view();
   context.method = settings.method;
   context.ao_sampling = settings.ao_sampling;
   context.albedo = ao ? Vec3(1.0f) : settings.clay_color;
@@ -74,8 +80,9 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   // surface, which is all there is under an even sky.
   context.lifts_rays = lifts && (ao || !scene.world_is_uniform());
   context.cuts_cosines = !ao && tables.cuts_cosines();
-  context.has_terminators =
-      context.lifts_rays || context.cuts_cosines || (lifts && context.passes.keeps_ambient());
+  context.lifts_lamp_rays = lifts && context.lamps.count > 0;
+  context.has_terminators = context.lifts_rays || context.lifts_lamp_rays || context.cuts_cosines ||
+                            (lifts && context.passes.keeps_ambient());
   context.bends_round = context.lifts_rays && !ao;
   context.origin = scene.origin();
   context.first_sample = settings.sample_offset;

@@ -3,6 +3,7 @@
 #include "core/camera.h"
 #include "core/environment_product.h"
 #include "core/filter.h"
+#include "core/lamp_choice.h"
 #include "core/sampler.h"
 #include "core/scene_view.h"
 #include "render/passes.h"
@@ -18,6 +19,7 @@ struct RenderContext {
   EnvironmentView environment;  ///< what is seen behind the scene
   EnvironmentView sky;          ///< what lights it: the same, or white for ambient occlusion
   ProductView product;          ///< bins = 0: light rays are drawn by cosine_share
+  LampsView lamps;              ///< none for ambient occlusion
   FilterView filter;
   Method method = Method::kAmbientOcclusion;
   AoSampling ao_sampling = AoSampling::kCosine;
@@ -33,6 +35,7 @@ struct RenderContext {
   /// Whether rays may leave above coarse smooth surfaces, and then go below their own triangle, or
   /// cosines be cut (core/terminator.h). Points have a terminator where any of their rays heeds it.
   bool has_terminators = false, lifts_rays = false, bends_round = false, cuts_cosines = false;
+  bool lifts_lamp_rays = false;  ///< the same as lifts_rays for rays to lamps
   VertexDimension light_dimension = kVertexLightDirection;  ///< that light rays are drawn by
   bool transparent = false;
   std::uint32_t seed = 0;
@@ -50,6 +53,10 @@ struct RenderContext {
   float mist_start = 0.0f, mist_depth = 0.0f;
   MistFalloff mist_falloff = MistFalloff::kQuadratic;
 };
+
+/// An upper bound of the radiance that the world sends along any ray, and about the most that lamps
+/// bring to a camera sample.
+float max_radiance(const Scene& scene, const Settings& settings);
 
 /// The settings are checked and the scene is committed and outlives the context.
 RenderContext make_context(const Scene& scene, const Settings& settings, const FilterView& filter);

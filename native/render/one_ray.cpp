@@ -3,6 +3,7 @@
 #include "bvh/traverse.h"
 #include "render/ambient.h"
 #include "render/light.h"
+#include "render/one_lamp_ray.h"
 #include "render/pass_row.h"
 
 namespace komorebi {
@@ -86,7 +87,13 @@ Vec3 light_alone(const RenderContext& given, const SurfacePoint& point, const Hi
                      [&](const LightSample& drawn, bool visible) {
                        if (visible) radiance += drawn.contribution;
                      });
-  return radiance / static_cast<float>(context.light_samples);
+  radiance /= static_cast<float>(context.light_samples);
+  Vec3 of_lamps(0.0f);
+  for_each_lamp_ray(given, point, hit, sampler, 0, sample, time, kMaskShadow << kMaskCatcherShift,
+                    [&](const Vec3& contribution, bool visible) {
+                      if (visible) of_lamps += contribution;
+                    });
+  return radiance + of_lamps;
 }
 
 }  // namespace
@@ -118,6 +125,10 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
                        add_ambient(layout, of_light, drawn.direction, drawn.contribution.x, row);
                      });
   result.radiance /= static_cast<float>(context.light_samples);
+  for_each_lamp_ray(context, point, hit, sampler, 0, sample, ray.time, kMaskShadow,
+                    [&](const Vec3& contribution, bool visible) {
+                      if (visible) result.radiance += contribution;
+                    });
   for (const AmbientCast& cast : ambient_casts(context)) {
     for_each_light_ray(cast.context, point, hit, sampler, sample, ray.time,
                        [&](const LightSample& drawn, bool visible) {
