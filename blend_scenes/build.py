@@ -23,6 +23,7 @@ import deforming
 import demo
 import features
 import instancing
+import lamps
 import motion
 import settings
 import strands
@@ -40,6 +41,7 @@ SCENES: dict[str, Callable[[], None]] = {
     **instancing.SCENES,
     **deforming.SCENES,
     **motion.SCENES,
+    **lamps.SCENES,
 }
 
 

@@ -213,13 +213,9 @@ def _denoised(engine: Any, session: Any, frame: Frame) -> FloatArray | None:
 
 def _said(data: SceneData, parts: native_scene.Parts) -> str:
     trees = "SAH trees" if parts.builder == "SAH" else "Linear trees"
-    return " | ".join(filter(None, (trees, _ignored(data))))
-
-
-def _ignored(scene: SceneData) -> str:
-    """What the method leaves out by design: for the statistics, not a warning."""
-    parts = [f"{n} {kind}{'' if n == 1 else 's'}" for kind, n in scene.ignored.items()]
-    return f"Without {', '.join(parts)}" if parts else ""
+    count = len(data.lamps)
+    lamps = f"{count} lamp{'' if count == 1 else 's'}" if count else ""
+    return " | ".join(filter(None, (trees, lamps)))
 
 
 def _warn_environment(engine: Any, environment: Any | None) -> None:

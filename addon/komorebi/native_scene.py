@@ -75,6 +75,12 @@ def build(
             parts.environment,
             strength=world.strength, texture_from_world=world.texture_from_world,
         )  # fmt: skip
+    for lamp in data.lamps:
+        scene.add_lamp(
+            lamp.kind, lamp.radiance, lamp.matrix,
+            name=lamp.name, casts_shadow=lamp.casts_shadow, lights_catchers=lamp.lights_catchers,
+            spot_scales_by_cosine=lamp.spot_scales_by_cosine, **lamp.sizes,
+        )  # fmt: skip
     try:
         scene.set_camera(
             camera.kind, camera.matrix, camera.clip_start, camera.clip_end,

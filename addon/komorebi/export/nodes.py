@@ -36,6 +36,15 @@ def world_output(tree: Any) -> Any | None:
     return None
 
 
+def light_output(tree: Any) -> Any | None:
+    """The Light Output node that counts for Cycles, or None."""
+    for target in ("CYCLES", "ALL"):
+        node = tree.get_output_node(target)
+        if node is not None and node.type == "OUTPUT_LIGHT":
+            return node
+    return None
+
+
 def find_upstream(node: Any, types: set[str]) -> Any | None:
     """The nearest node of one of `types` that feeds `node`, groups searched as well."""
     seen: set[int] = set()

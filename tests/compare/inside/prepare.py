@@ -36,9 +36,11 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
     notes = render_settings.set_size(scene, job["longest"])
     render_settings.set_output(scene)
     layer, more = render_settings.choose_view_layer(scene, job["view_layer"])
-    notes += more + objects.lamps_off() + objects.objects_off()
+    lamps = job["lamps"] and job["mode"] == "world"
+    notes += more + (objects.lamps_unseen() if lamps else objects.lamps_off())
+    notes += objects.objects_off()
     layer.material_override = engines.clay(job["mode"], job["flat"])
-    notes += world.set_world(scene, job["mode"], job["world_image"])
+    notes += world.set_world(scene, job["mode"], job["world_image"], lamps)
     if job["mode"] == "ao":
         objects.terminators_off()
         notes += objects.visible_alike()

@@ -71,7 +71,7 @@ void add_lamps(Scene& scene) {
     lamp.spread = i % 2 ? kPi : 2.0;
     lamp.spot_angle = i % 3 ? 0.0 : 1.5;
     lamp.spot_blend = 0.3;
-    lamp.flags = i % 7 == 3 ? kLampNoShadow : i % 7 == 4 ? kLampSkipsCatcher : 0;
+    lamp.flags = i % 7 == 3 ? 1 : i % 7 == 4 ? 2 : 0;  // LampFlag
     scene.add_lamp(lamp);
   }
 }
