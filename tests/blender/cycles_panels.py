@@ -5,7 +5,9 @@ Cycles' own `ui.py` in every release.
 """
 
 VOLUMES = "volumes are not rendered"
-LAMPS = "light comes from the world alone: lamps give none"
+LINKING = "lamps light all objects"
+LAMP_NODES = "of a light's nodes one Emission counts; they are edited in the node editor"
+LAMP_SETTINGS = "one strategy finds lamps, and its choice among many has no settings"
 BOUNCES = "light is traced without bounces"
 VIEWPORT = "there is no rendered view in the viewport"
 BAKING = "there is no baking"
@@ -76,7 +78,7 @@ LEFT_OUT = {
     "CYCLES_RENDER_PT_sampling_viewport_denoise": VIEWPORT,
     "CYCLES_RENDER_PT_sampling_path_guiding": BOUNCES,
     "CYCLES_RENDER_PT_sampling_path_guiding_debug": BOUNCES,
-    "CYCLES_RENDER_PT_sampling_lights": LAMPS,
+    "CYCLES_RENDER_PT_sampling_lights": LAMP_SETTINGS,
     "CYCLES_RENDER_PT_light_paths": BOUNCES,
     "CYCLES_RENDER_PT_light_paths_max_bounces": BOUNCES,
     "CYCLES_RENDER_PT_light_paths_clamping": BOUNCES,
@@ -101,13 +103,13 @@ LEFT_OUT = {
     "CYCLES_OBJECT_PT_shading_caustics": BOUNCES,
     "CYCLES_OBJECT_PT_lightgroup": LIGHT_GROUPS,
     "CYCLES_OBJECT_PT_visibility_culling": "what is far or outside of the view is rendered too",
-    "CYCLES_OBJECT_PT_light_linking": LAMPS,
-    "CYCLES_OBJECT_PT_shadow_linking": LAMPS,
-    "CYCLES_OBJECT_MT_light_linking_context_menu": LAMPS,
-    "CYCLES_OBJECT_MT_shadow_linking_context_menu": LAMPS,
+    "CYCLES_OBJECT_PT_light_linking": LINKING,
+    "CYCLES_OBJECT_PT_shadow_linking": LINKING,
+    "CYCLES_OBJECT_MT_light_linking_context_menu": LINKING,
+    "CYCLES_OBJECT_MT_shadow_linking_context_menu": LINKING,
     "CYCLES_LIGHT_PT_preview": PREVIEWS,
-    "CYCLES_LIGHT_PT_nodes": LAMPS,
-    "CYCLES_LIGHT_PT_settings": LAMPS,
+    "CYCLES_LIGHT_PT_nodes": LAMP_NODES,
+    "CYCLES_LIGHT_PT_settings": LAMP_SETTINGS,
     "CYCLES_WORLD_PT_preview": PREVIEWS,
     "CYCLES_WORLD_PT_volume": VOLUMES,
     "CYCLES_WORLD_PT_settings": "only of the three below",
@@ -137,8 +139,8 @@ LEFT_OUT = {
     "NODE_CYCLES_WORLD_PT_settings_volume": VOLUMES,
     "NODE_CYCLES_LIGHT_PT_light": COPY,
     "NODE_CYCLES_LIGHT_PT_beam_shape": COPY,
-    "NODE_CYCLES_LIGHT_PT_settings": LAMPS,
-    "draw_make_links": LAMPS,
+    "NODE_CYCLES_LIGHT_PT_settings": LAMP_SETTINGS,
+    "draw_make_links": LINKING,
     "draw_pause": VIEWPORT,
 }
 # Blender's own panels that Cycles shows and we do not, beside those that the add-on excludes.

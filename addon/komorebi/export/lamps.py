@@ -133,6 +133,8 @@ def _is_portal(light: Any) -> bool:
 
 
 def _lamp(light: Any, strength: Color, matrix: DoubleArray) -> LampData | None:
+    if light.type != "POINT" and not abs(np.linalg.det(matrix[:3, :3])) > 0.0:
+        return None  # scaled away: it points nowhere
     make = {"SUN": _sun, "AREA": _area}.get(light.type, _ball)
     return make(light, strength, matrix)
 
@@ -179,7 +181,7 @@ def _area(light: Any, strength: Color, matrix: DoubleArray) -> LampData | None:
     is_round = light.shape in {"DISK", "ELLIPSE"}
     lengths = np.linalg.norm(matrix[:3, :3], axis=0)
     area = u * v * lengths[0] * lengths[1] * (0.25 * math.pi if is_round else 1.0)
-    if not (area > 0.0 and lengths[2] > 0.0):
+    if not area > 0.0:
         return None
     spread = min(float(light.spread), math.pi)
     if compat.OLD_LAMPS:
@@ -194,10 +196,7 @@ def _unstretched(matrix: DoubleArray) -> DoubleArray:
     """The same place and −z, without scale and shear: Cycles 3.x has round cones only."""
     result = np.eye(4)
     result[:3, 3] = matrix[:3, 3]
-    length = np.linalg.norm(matrix[:3, 2])
-    if not length > 0.0:
-        return matrix
-    z = matrix[:3, 2] / length
+    z = matrix[:3, 2] / np.linalg.norm(matrix[:3, 2])
     x = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])
     x /= np.linalg.norm(x)
     result[:3, :3] = np.stack([x, np.cross(z, x), z], axis=1)

@@ -50,7 +50,7 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
     notes += camera.ensure_camera(scene, depsgraph)
     notes += camera.supported_camera(scene.camera) + objects.unsupported_instances(depsgraph)
     samples = job["samples"]
-    if any(thing.is_shadow_catcher for thing in scene.objects):
+    if any(t.is_shadow_catcher for t in scene.objects if t.type != "LIGHT"):
         samples *= CATCHER_SAMPLES
         notes.append(f"shadow catchers: {CATCHER_SAMPLES} times the samples")
     if job["stereo"] is not None:
