@@ -24,6 +24,7 @@ import deforming
 import demo
 import features
 import instancing
+import lamps
 import materials
 import motion
 import settings
@@ -44,6 +45,7 @@ SCENES: dict[str, Callable[[], None]] = {
     **instancing.SCENES,
     **deforming.SCENES,
     **motion.SCENES,
+    **lamps.SCENES,
 }
 
 

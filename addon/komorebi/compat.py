@@ -22,6 +22,11 @@ NORMALS_AS_DIRECTIONS = VERSION < (4, 0, 0)  # so the node Vector Transform turn
 CORNER_NORMALS = VERSION >= (4, 1, 0)  # mesh.corner_normals, no auto smooth
 NOISE_REPEATS = VERSION >= (4, 1, 0)  # every 100,000 cells, where floats lose places in a cell
 VORONOI_PCG = VERSION >= (5, 0, 0)  # hashes cells of two dimensions and more
+OLD_LAMPS = VERSION < (
+    4,
+    0,
+    0,
+)  # Cycles' lights: disks for balls, areas of a quarter of their power
 
 
 def cycles_or(block: Any, otherwise: Any) -> Any:
@@ -356,3 +361,41 @@ def rolling_shutter(scene: Any) -> float | None:
     if settings is None or settings.rolling_shutter_type != "TOP":
         return None
     return float(settings.rolling_shutter_duration)
+
+
+def casts_shadow(light: Any) -> bool:
+    """Whether what is in a light's way matters: Cycles' own setting up to 4.2."""
+    settings = cycles_or(light, None)
+    if settings is not None and hasattr(settings, "cast_shadow"):
+        return bool(settings.cast_shadow)
+    return bool(light.use_shadow)
+
+
+def is_soft(light: Any) -> bool:
+    """Whether a point or spot with a radius is a disk turned to what it lights, not a ball."""
+    return OLD_LAMPS or bool(light.use_soft_falloff)
+
+
+def normalizes(light: Any) -> bool:
+    """Whether a light's power is spread over its size (a choice since 4.5)."""
+    return bool(getattr(light, "normalize", True))
+
+
+def light_factor(light: Any) -> float:
+    """What multiplies a light's power: its exposure (4.5)."""
+    return float(2.0 ** getattr(light, "exposure", 0.0))
+
+
+def light_tint(light: Any) -> tuple[float, float, float]:
+    """What multiplies a light's colour: its temperature (4.5)."""
+    if not getattr(light, "use_temperature", False):
+        return (1.0, 1.0, 1.0)
+    red, green, blue = light.temperature_color
+    return (float(red), float(green), float(blue))
+
+
+def light_links(obj: Any) -> list[str]:
+    """What of light linking (4.0) an object uses."""
+    links = getattr(obj, "light_linking", None)
+    found = (("receiver_collection", "light linking"), ("blocker_collection", "shadow linking"))
+    return [what for name, what in found if getattr(links, name, None) is not None]

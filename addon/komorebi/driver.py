@@ -225,15 +225,11 @@ def _denoised(engine: Any, session: Any, frame: Frame) -> FloatArray | None:
 
 def _said(data: SceneData, parts: native_scene.Parts) -> str:
     trees = "SAH trees" if parts.builder == "SAH" else "Linear trees"
+    count = len(data.lamps)
+    lamps = f"{count} lamp{'' if count == 1 else 's'}" if count else ""
     simpler = native_surfaces.simplified(data.materials)
     simplified = f"Simplified: {simpler}" if simpler else ""
-    return " | ".join(filter(None, (trees, _ignored(data), simplified)))
-
-
-def _ignored(scene: SceneData) -> str:
-    """What the method leaves out by design: for the statistics, not a warning."""
-    parts = [f"{n} {kind}{'' if n == 1 else 's'}" for kind, n in scene.ignored.items()]
-    return f"Without {', '.join(parts)}" if parts else ""
+    return " | ".join(filter(None, (trees, lamps, simplified)))
 
 
 def _warn_environment(engine: Any, environment: Any | None) -> None:

@@ -84,6 +84,12 @@ def build(
         )  # fmt: skip
     if parts.world_program is not None:
         scene.set_world_program(parts.world_program)
+    for lamp in data.lamps:
+        scene.add_lamp(
+            lamp.kind, lamp.radiance, lamp.matrix,
+            name=lamp.name, casts_shadow=lamp.casts_shadow, lights_catchers=lamp.lights_catchers,
+            spot_scales_by_cosine=lamp.spot_scales_by_cosine, **lamp.sizes,
+        )  # fmt: skip
     try:
         scene.set_camera(
             camera.kind, camera.matrix, camera.clip_start, camera.clip_end,

@@ -16,10 +16,10 @@ INTERVAL_BACKGROUND = 1.0  # at least; in background each is a line in the log
 class Progress:
     """Passes the session's progress on to Blender, not more often than anyone can read."""
 
-    def __init__(self, engine: Any, label: str, ignored: str) -> None:
+    def __init__(self, engine: Any, label: str, said: str) -> None:
         self._engine = engine
         self._label = label
-        self._ignored = ignored
+        self._said = said
         self._interval = INTERVAL_BACKGROUND if bpy.app.background else INTERVAL_WINDOW
         self._next = 0.0
 
@@ -45,8 +45,8 @@ class Progress:
             parts.append(f"Tile {state['tile']}/{state['tiles']}")
             parts.append(f"Remaining {_clock(state['remaining'])}")
         parts.append(f"Memory {memory:.1f}M")
-        if final and self._ignored:
-            parts.append(self._ignored)
+        if final and self._said:
+            parts.append(self._said)
         self._engine.update_stats("", " | ".join(parts))
 
 

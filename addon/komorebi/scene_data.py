@@ -293,6 +293,20 @@ class WorldData:
 
 
 @dataclass(slots=True)
+class LampData:
+    """Light besides the world, as the core's add_lamp takes it."""
+
+    name: str
+    kind: str  # SUN, TANGENT_SUN, DIRECTION, SPHERE, DISK, POINT, RECTANGLE, ELLIPSE
+    radiance: DoubleArray  # [3], or irradiance or intensity where the kind has no solid angle
+    matrix: DoubleArray  # [4, 4] world from lamp, M @ p
+    sizes: dict[str, float] = field(default_factory=dict)  # by the core's names
+    casts_shadow: bool = True
+    lights_catchers: bool = True
+    spot_scales_by_cosine: bool = False
+
+
+@dataclass(slots=True)
 class ObjectData:
     """An object as passes tell of it."""
 
@@ -333,6 +347,7 @@ class SceneData:
     meshes: list[AnyMesh] = field(default_factory=list)
     instances: list[InstanceData] = field(default_factory=list)
     objects: list[ObjectData] = field(default_factory=list)
+    lamps: list[LampData] = field(default_factory=list)
     materials: Materials = field(default_factory=Materials)
     texture_limit: int = 1 << 30  # bytes of all textures together
     ignored: dict[str, int] = field(default_factory=dict)  # kind of object → how many

@@ -17,11 +17,11 @@ inline constexpr std::uint32_t kDimensionsPerVertex = 16;
 /// Within a vertex's block.
 enum VertexDimension : std::uint32_t {
   kVertexLightDirection = 0,  ///< 0–1: direction of a light ray
-  kVertexLightChoice = 2,     ///< which strategy or light
-  kVertexRoulette = 3,        ///< whether the path goes on from here
+  kVertexRoulette = 2,        ///< whether the path goes on from here; 3 reserved
   kVertexScatter = 4,         ///< 4–5: direction of the next bounce
   kVertexAmbient = 6,         ///< 6–7: direction of a ray for ambient occlusion beside light rays
-  kVertexLobe = 8,            ///< which part of a surface's light; 9–15 reserved
+  kVertexLobe = 8,            ///< which part of a surface's light; 9 reserved
+  kVertexLamp = 10,  ///< 10–11: which lamp a ray goes to, and where on it; 12–15 reserved
 };
 
 /// The dimension of use `use` at path vertex `vertex` (0: where the camera ray hits). Light ray j

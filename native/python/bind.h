@@ -11,6 +11,7 @@
 
 namespace komorebi {
 class Mesh;
+class Scene;
 }
 
 namespace komorebi::python {
@@ -32,6 +33,8 @@ void bind_attributes(py::class_<Mesh, std::shared_ptr<Mesh>>& mesh);
 /// Blender's names of a node's interpolation and extension; std::invalid_argument.
 Interpolation interpolation_from_name(const std::string& name);
 Extension extension_from_name(const std::string& name);
+/// What Scene has of lamps.
+void bind_lamps(py::class_<Scene, std::shared_ptr<Scene>>& scene);
 
 /// A pool for a build: `threads` of Blender's scene, 0 for one a core. One pool is kept from call
 /// to call, because starting threads costs more than a small mesh's build.

@@ -324,9 +324,10 @@ void bind_scene(py::module_& module) {
              "them with probability 2^-128. Of use within this process alone.");
   bind_mesh(module);
   bind_environment(module);
-  py::class_<Scene, std::shared_ptr<Scene>>(
-      module, "Scene", "Meshes, instances, world and camera: filled, then committed once.")
-      .def(py::init<>())
+  py::class_<Scene, std::shared_ptr<Scene>> made(
+      module, "Scene", "Meshes, instances, world, lamps and camera: filled, then committed once.");
+  bind_lamps(made);
+  made.def(py::init<>())
       .def(
           "add_mesh",
           [](Scene& scene, std::shared_ptr<Mesh> mesh) { return scene.add_mesh(std::move(mesh)); },

@@ -12,6 +12,7 @@ RenderContext ambient_context(const RenderContext& given, float distance) {
   context.method = Method::kAmbientOcclusion;
   context.sky = constant_environment(Vec3(1.0f));
   context.product = {};
+  context.lamps = {};
   context.albedo = Vec3(1.0f);
   context.has_materials = false;
   context.bounces = 0;

@@ -9,6 +9,7 @@
 #include "render/cells.h"
 #include "render/context.h"
 #include "render/film.h"
+#include "render/lamp_caster.h"
 #include "render/light_caster.h"
 #include "render/ray_batch.h"
 #include "render/shade.h"
@@ -67,6 +68,8 @@ class BatchIntegrator {
                      std::uint32_t end);
   void add_direct_light();
   bool bounce(const Cancel& cancel);
+  /// What lamps bring to the surfaces in view.
+  bool find_lamp_light(const Cancel& cancel);
   void finish_passes();
   float* row(std::uint32_t path) { return rows_.data() + context_.passes.size() * path; }
 
@@ -82,6 +85,8 @@ class BatchIntegrator {
   std::vector<float> rows_;  // [paths][context_.passes.size()]
   AmbientPasses of_light_;   // passes that light rays fill
   LightCaster light_caster_;
+  LampCaster lamp_caster_;
+  std::vector<Vec3> lamp_light_, lamp_light_alone_;  // of each surface; of those that are catchers
   struct Ambient {
     AmbientPasses passes;
     LightCaster caster;

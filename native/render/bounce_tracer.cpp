@@ -7,7 +7,9 @@
 namespace komorebi {
 
 BounceTracer::BounceTracer(const RenderContext& context)
-    : context_(context), caster_(later_context(context, 1)) {}
+    : context_(context),
+      caster_(later_context(context, 1)),
+      lamp_caster_(later_context(context, 1)) {}
 
 void BounceTracer::clear() {
   next_rays_.clear();
@@ -71,6 +73,18 @@ bool BounceTracer::find_surfaces(std::uint32_t vertex, const Cancel& cancel) {
                    if (visible) light_[s] += contribution;
                  });
   }
+  return find_lamp_light(vertex, cancel);
+}
+
+bool BounceTracer::find_lamp_light(std::uint32_t vertex, const Cancel& cancel) {
+  if (context_.lamps.count == 0) return true;
+  lamp_light_.assign(surfaces_.size(), Vec3(0.0f));
+  const std::uint32_t size = lamp_caster_.block_size();
+  for (std::uint32_t begin = 0; begin < surfaces_.size(); begin += size) {
+    if (cancel.raised()) return false;
+    lamp_caster_.cast(surfaces_, begin, std::min(surfaces_.size(), begin + size), vertex,
+                      lamp_light_.data());
+  }
   return true;
 }
 
@@ -82,7 +96,8 @@ bool BounceTracer::trace(const Cancel& cancel,
     for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
       State state = states_[surfaces_.path(s)];
       const Shading shading = surfaces_.shading(s);
-      const Vec3 light = light_[s] / static_cast<float>(kLaterLightSamples);
+      Vec3 light = light_[s] / static_cast<float>(kLaterLightSamples);
+      if (context_.lamps.count > 0) light += lamp_light_[s];
       visit(state.path, indirect_light(context_, vertex, state.throughput, shading, light));
       if (vertex == context_.bounces) continue;
       state.throughput *= shading.albedo;

@@ -4,6 +4,7 @@
 
 #include "parallel/cancel.h"
 #include "parallel/function_ref.h"
+#include "render/lamp_caster.h"
 #include "render/light_caster.h"
 #include "render/ray_batch.h"
 #include "render/ray_order.h"
@@ -27,7 +28,9 @@ class BounceTracer {
   /// path's in their order. False when cancelled on the way.
   bool trace(const Cancel& cancel, FunctionRef<void(std::uint32_t path, const Vec3& light)> visit);
 
-  std::uint64_t ray_count() const { return ray_count_ + caster_.ray_count(); }
+  std::uint64_t ray_count() const {
+    return ray_count_ + caster_.ray_count() + lamp_caster_.ray_count();
+  }
 
  private:
   /// A path on its way from one vertex to the next.
@@ -39,17 +42,20 @@ class BounceTracer {
   void leave(std::uint32_t vertex, const SurfaceBatch& surfaces, std::uint32_t surface,
              State state);
   void take_next();
+  bool find_lamp_light(std::uint32_t vertex, const Cancel& cancel);
   bool find_surfaces(std::uint32_t vertex, const Cancel& cancel);
 
   RenderContext context_;
   LightCaster caster_;
+  LampCaster lamp_caster_;
   RayBatch rays_, next_rays_;
   std::vector<State> states_, next_states_;  // of each ray
   RayOrder order_;
   std::vector<Hit> hits_;
   SurfaceBatch surfaces_;
   BatchShader shader_;
-  std::vector<Vec3> light_;  // mean of the light rays of each surface
+  std::vector<Vec3> light_;       // of the light rays of each surface
+  std::vector<Vec3> lamp_light_;  // likewise of those to lamps
   std::uint64_t ray_count_ = 0;
 };
 

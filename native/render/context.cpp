@@ -59,6 +59,11 @@ void take_materials(const SceneTables& tables, bool ao, RenderContext& context) 
 
 }  // namespace
 
+float max_radiance(const Scene& scene, const Settings& settings) {
+  const bool lamps = settings.method == Method::kWorldLight;
+  return scene.max_radiance() + (lamps ? scene.max_lamp_radiance() : 0.0f);
+}
+
 RenderContext make_context(const Scene& scene, const Settings& settings, const FilterView& filter) {
   const bool ao = settings.method == Method::kAmbientOcclusion;
   RenderContext context;
@@ -68,6 +73,7 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.world_program = scene.world_program();
   context.sky = ao ? constant_environment(Vec3(1.0f)) : context.environment;
   context.filter = filter;
+  if (!ao) context.lamps = scene.lamps().view();
   context.method = settings.method;
   context.ao_sampling = settings.ao_sampling;
   context.clay_albedo = settings.clay_color;
@@ -109,8 +115,9 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   // surface, which is all there is under an even sky.
   context.lifts_rays = lifts && (ao || !scene.world_is_uniform());
   context.cuts_cosines = !ao && tables.cuts_cosines();
-  context.has_terminators =
-      context.lifts_rays || context.cuts_cosines || (lifts && context.passes.keeps_ambient());
+  context.lifts_lamp_rays = lifts && context.lamps.count > 0;
+  context.has_terminators = context.lifts_rays || context.lifts_lamp_rays || context.cuts_cosines ||
+                            (lifts && context.passes.keeps_ambient());
   context.bends_round = context.lifts_rays && !ao;
   context.origin = scene.origin();
   context.frame_width = static_cast<float>(scene.camera_desc().width);

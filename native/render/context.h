@@ -3,6 +3,7 @@
 #include "core/camera.h"
 #include "core/environment_product.h"
 #include "core/filter.h"
+#include "core/lamp_choice.h"
 #include "core/sampler.h"
 #include "core/scene_view.h"
 #include "render/passes.h"
@@ -19,6 +20,7 @@ struct RenderContext {
   const Program* world_program = nullptr;
   EnvironmentView sky;  ///< what lights it: the same, or white for ambient occlusion
   ProductView product;  ///< bins = 0: light rays are drawn by cosine_share
+  LampsView lamps;      ///< none for ambient occlusion
   FilterView filter;
   Method method = Method::kAmbientOcclusion;
   AoSampling ao_sampling = AoSampling::kCosine;
@@ -32,6 +34,7 @@ struct RenderContext {
   float light_distance = 0.0f;  ///< largest t of a light ray
   float cosine_share = 1.0f;  ///< share of light rays drawn from the cosine; the rest from the map
   std::uint32_t light_mask = kMaskShadow;     ///< of light rays
+  std::uint32_t lamp_mask = kMaskShadow;      ///< of rays to lamps
   std::uint32_t scatter_mask = kMaskDiffuse;  ///< of rays to the next surface
   /// Where it matters that Cycles finds a map's light by rays of two kinds (surface_share in
   /// light.h): the mask of those that it samples by the surface, light_mask being that of the
@@ -43,6 +46,7 @@ struct RenderContext {
   bool has_terminators = false, lifts_rays = false, bends_round = false, cuts_cosines = false;
   std::uint32_t light_dimension =
       vertex_dimension(0, kVertexLightDirection);  ///< that light rays are drawn by
+  bool lifts_lamp_rays = false;                    ///< the same as lifts_rays for rays to lamps
   bool transparent = false;
   std::uint32_t seed = 0;
   std::uint32_t light_samples = 1;
@@ -60,6 +64,10 @@ struct RenderContext {
   float mist_start = 0.0f, mist_depth = 0.0f;
   MistFalloff mist_falloff = MistFalloff::kQuadratic;
 };
+
+/// An upper bound of the radiance that the world sends along any ray, and about the most that lamps
+/// bring to a camera sample.
+float max_radiance(const Scene& scene, const Settings& settings);
 
 /// The settings are checked and the scene is committed and outlives the context.
 RenderContext make_context(const Scene& scene, const Settings& settings, const FilterView& filter);

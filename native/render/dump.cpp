@@ -343,6 +343,7 @@ void write_dump(const std::string& path, const Scene& scene, const Settings& set
   put_poses(file, scene);
   put_terminators(file, scene.tables());
   put_world(file, scene);
+  put_lamps(file, scene.lamp_inputs());
   put_camera(file, scene.camera_desc());
   put_settings(file, settings);
   file.write(path);
@@ -367,6 +368,7 @@ DumpedRender read_dump(const std::string& path, ThreadPool& pool, const Cancel& 
   get_instances(file, *dumped.scene);
   get_terminators(file, *dumped.scene);
   get_world(file, *dumped.scene);
+  get_lamps(file, *dumped.scene);
   return dumped;
 }
 

@@ -24,23 +24,27 @@ struct DumpedRender {
 ///     instance/motion/instance*, pose_count*, poses*  of those that move (add_moving_instances)
 ///     object/terminator*  cutoff and frequency of ObjectInfo, by object_index
 ///     world/color  or  world/texels, world/strength, world/texture_from_world
+///     lamp/kind*, flags*, scales_by_cosine*, radiance*, world_from_lamp*, numbers*  (LampInput,
+///         for_each_lamp_number)
 ///     camera/kind, clip_from_world or world_from_camera, clip_start, clip_end, resolution,
 ///         lens/…*, panorama/…*, stereo/…*   by the names in camera_fields.h
 ///     camera/motion/poses*, zoom_open, zoom_close  (CameraMotionDesc)
 ///     camera/shutter/curve*, rolling_duration*     (ShutterDesc)
 ///     settings/…   one value a setting, by its name on scene.komorebi
 ///
-/// (* only where the mesh or camera has them.) Vertices, keys and points (x, y, z, radius) are
-/// relative to `origin`; matrices are column-major. Throws std::runtime_error naming the file.
+/// (* only where the scene, mesh or camera has them.) Vertices, keys and points (x, y, z, radius)
+/// are relative to `origin`; matrices are column-major. Throws std::runtime_error naming the file.
 void write_dump(const std::string& path, const Scene& scene, const Settings& settings);
 
 /// Throws std::runtime_error or std::invalid_argument with a sentence naming what is wrong.
 DumpedRender read_dump(const std::string& path, ThreadPool& pool, const Cancel& cancel);
 
-/// The settings' and the camera's part alone.
+/// The settings', the camera's and the lamps' part alone.
 class ArrayFile;
 void put_camera(ArrayFile& file, const CameraDesc& camera);
 CameraDesc get_camera(const ArrayFile& file);
+void put_lamps(ArrayFile& file, const std::vector<LampInput>& lamps);
+void get_lamps(const ArrayFile& file, Scene& scene);
 void put_settings(ArrayFile& file, const Settings& settings);
 Settings get_settings(const ArrayFile& file);
 

@@ -4,6 +4,7 @@
 #include "core/path_key.h"
 #include "render/ambient.h"
 #include "render/light.h"
+#include "render/one_lamp_ray.h"
 #include "render/pass_row.h"
 #include "render/scatter.h"
 #include "render/shade.h"
@@ -109,8 +110,11 @@ void add_bounces(const RenderContext& context, MaterialShader& shader, SurfacePo
     point = surface_point(context.scene, hit, ray);
     const Shading shading =
         shade_surface(context, shader, hit, ray, sampler.pixel_seed, sample, vertex + 1, point);
-    const Vec3 light =
-        mean_light(later_context(context, vertex + 1), point, hit, sampler, sample, time);
+    const RenderContext later = later_context(context, vertex + 1);
+    Vec3 light = mean_light(later, point, hit, sampler, sample, time);
+    if (later.lamps.count > 0) {
+      light += lamp_light(later, point, hit, sampler, vertex + 1, sample, time);
+    }
     radiance += indirect_light(context, vertex + 1, throughput, shading, light);
     throughput *= shading.albedo;
   }
@@ -121,8 +125,9 @@ Vec3 light_alone(const RenderContext& given, MaterialShader& shader, const Surfa
                  const Hit& hit, const Shading& shading, const Sampler& sampler,
                  std::uint32_t sample, float time) {
   const RenderContext context = alone_context(given);
-  Vec3 radiance =
-      direct_light(context, shading, mean_light(context, point, hit, sampler, sample, time));
+  Vec3 light = mean_light(context, point, hit, sampler, sample, time);
+  if (context.lamps.count > 0) light += lamp_light(context, point, hit, sampler, 0, sample, time);
+  Vec3 radiance = direct_light(context, shading, light);
   add_bounces(context, shader, point, hit, shading.albedo, sampler, sample, time, radiance);
   return radiance;
 }
@@ -158,8 +163,11 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
                        result.radiance += drawn.contribution;
                        add_ambient(layout, of_light, drawn.direction, drawn.contribution.x, row);
                      });
-  result.radiance =
-      direct_light(context, shading, result.radiance / static_cast<float>(context.light_samples));
+  Vec3 light = result.radiance / static_cast<float>(context.light_samples);
+  if (context.lamps.count > 0) {
+    light += lamp_light(context, point, hit, sampler, 0, sample, ray.time);
+  }
+  result.radiance = direct_light(context, shading, light);
   add_bounces(context, shader, point, hit, shading.albedo, sampler, sample, ray.time,
               result.radiance);
   for (const AmbientCast& cast : ambient_casts(context)) {

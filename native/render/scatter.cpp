@@ -52,6 +52,7 @@ RenderContext alone_context(const RenderContext& given) {
   context.light_mask <<= kMaskCatcherShift;
   context.surface_mask <<= kMaskCatcherShift;
   context.scatter_mask <<= kMaskCatcherShift;
+  context.lamp_mask <<= kMaskCatcherShift;
   return context;
 }
 

@@ -169,6 +169,12 @@ void Scene::set_camera(const CameraDesc& camera) {
   has_camera_ = true;
 }
 
+void Scene::add_lamp(LampInput lamp) {
+  require_open();
+  check_lamp(lamp);
+  lamp_inputs_.push_back(std::move(lamp));
+}
+
 void Scene::set_tables(SceneTables tables) {
   require_open();
   const auto& begin = tables.slot_begin;
@@ -296,10 +302,11 @@ void Scene::choose_origin() {
   }
   if (!(lo.x <= hi.x)) return;  // nothing to see: the origin stays
   origin_ = 0.5 * (lo + hi);
-  if (!has_camera_) return;
   const Vec3d extent = hi - lo;
   const double longest = std::max({extent.x, extent.y, extent.z});
   if (!(longest > 0.0)) return;
+  length_ = longest;
+  if (!has_camera_) return;
   const double step = std::exp2(std::floor(std::log2(longest / 256.0)));
   const Vec3d eye = make_camera(camera_desc_, Vec3d(0.0)).origin;
   origin_ = step * glm::round(glm::clamp(eye, lo, hi) / step);
@@ -335,6 +342,7 @@ void Scene::commit(ThreadPool& pool, const Cancel& cancel, bool keep_inputs) {
   require_open();
   committed_ = true;
   choose_origin();
+  lamps_ = LampTable(lamp_inputs_, origin_);
 
   traced_meshes_ = meshes_;
   instances_.reserve(inputs_.size());
@@ -398,7 +406,8 @@ std::size_t Scene::byte_count() const {
       inputs_.capacity() * sizeof(InstanceInput) + mesh_views_.capacity() * sizeof(MeshView) +
       poses_.capacity() * sizeof(Mat4d) + moving_inputs_.capacity() * sizeof(MovingInput) +
       motion_.byte_count() + steps_.capacity() * sizeof(InstanceSteps) +
-      instance2steps_.capacity() * sizeof(std::uint32_t);
+      instance2steps_.capacity() * sizeof(std::uint32_t) +
+      lamp_inputs_.capacity() * sizeof(LampInput) + lamps_.byte_count();
   for (const auto& mesh : traced_meshes_.empty() ? meshes_ : traced_meshes_) {
     sum += mesh->byte_count();
   }

@@ -12,6 +12,7 @@
 #include "render/camera.h"
 #include "render/environment.h"
 #include "render/instance_motion.h"
+#include "render/lamps.h"
 #include "render/mesh.h"
 #include "render/scene_tables.h"
 #include "shader/program.h"
@@ -58,6 +59,8 @@ class Scene {
   /// @param max_radiance  a bound of what is too small to be found (a sun's disc)
   void set_world_program(std::shared_ptr<const Program> program, float max_radiance = 0.0f);
   void set_camera(const CameraDesc& camera);
+  /// Throws std::invalid_argument naming the lamp when a number of it is out of range.
+  void add_lamp(LampInput lamp);
   /// Throws std::invalid_argument when lists of slots name what is not there.
   void set_tables(SceneTables tables);
   /// Which hits count on instances that have a see-through material among their slots; what the
@@ -93,6 +96,14 @@ class Scene {
   StepsView steps() const;
   /// An upper bound of the radiance that the world sends along any ray.
   float max_radiance() const;
+  /// Those that were added, once the scene is committed.
+  const LampTable& lamps() const { return lamps_; }
+  const std::vector<LampInput>& lamp_inputs() const { return lamp_inputs_; }
+  /// About the most that one camera sample brings by lamps: LampTable::max_radiance where they are
+  /// nearer than a thousandth of the scene's length.
+  float max_lamp_radiance() const {
+    return lamps_.max_radiance(static_cast<float>(1e-3 * length_));
+  }
 
   const Vec3d& origin() const { return origin_; }
   const std::vector<std::shared_ptr<const Mesh>>& meshes() const { return meshes_; }
@@ -151,8 +162,11 @@ class Scene {
   HitFilter hit_filter_;
   std::shared_ptr<MaterialFilter> material_filter_;  // null: nothing is see-through
   std::vector<std::uint8_t> see_through_;            // of tables_.materials
+  std::vector<LampInput> lamp_inputs_;
 
   Vec3d origin_{0.0};
+  double length_ = 1.0;  // of the bounds' longest side
+  LampTable lamps_;
   std::vector<std::shared_ptr<const Mesh>> traced_meshes_;  // meshes_, then the flattened ones
   std::vector<MeshView> mesh_views_;
   std::vector<InstanceView> instances_;

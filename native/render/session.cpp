@@ -41,7 +41,7 @@ Session::Session(std::shared_ptr<const Scene> scene, const Settings& settings)
       light_samples_(context_.light_samples),
       rule_(settings_, context_.light_samples),
       pool_(settings_.threads),
-      film_(film_region(*scene_, settings_), settings_, scene_->max_radiance(),
+      film_(film_region(*scene_, settings_), settings_, max_radiance(*scene_, settings_),
             scene_->has_catchers(), scene_->tables().max_value()),
       schedule_(make_tiles(film_.region(), settings_.tile_size, pool_.size()), settings_, rule_) {
   launch();

@@ -26,6 +26,9 @@ class SurfaceBatch {
 
   std::uint32_t size() const { return count_; }
   std::uint32_t path(std::uint32_t i) const { return path_[i]; }
+  std::uint32_t pixel_seed(std::uint32_t i) const { return pixel_seed_[i]; }
+  /// Of its light rays in their pixel's sequence: sample · light_samples.
+  std::uint32_t first_index(std::uint32_t i) const { return first_index_[i]; }
   float depth(std::uint32_t i) const { return floats_[9][i]; }
   Vec3 normal(std::uint32_t i) const { return vector(0, i); }
   Vec3 geometric_normal(std::uint32_t i) const { return vector(3, i); }

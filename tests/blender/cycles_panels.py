@@ -5,7 +5,9 @@ Cycles' own `ui.py` in every release.
 """
 
 VOLUMES = "volumes are not rendered"
-LAMPS = "light comes from the world alone: lamps give none"
+LINKING = "lamps light all objects"
+LAMP_NODES = "of a light's nodes one Emission counts; they are edited in the node editor"
+LAMP_SETTINGS = "one strategy finds lamps, and its choice among many has no settings"
 GUIDING = "light rays are guided by what surfaces see of the sky, bounces by the cosine alone"
 FAST_GI = "light bounces, or does not: there is no approximation of it"
 VIEWPORT = "there is no rendered view in the viewport"
@@ -80,7 +82,7 @@ LEFT_OUT = {
     "CYCLES_RENDER_PT_sampling_viewport_denoise": VIEWPORT,
     "CYCLES_RENDER_PT_sampling_path_guiding": GUIDING,
     "CYCLES_RENDER_PT_sampling_path_guiding_debug": GUIDING,
-    "CYCLES_RENDER_PT_sampling_lights": LAMPS,
+    "CYCLES_RENDER_PT_sampling_lights": LAMP_SETTINGS,
     "CYCLES_RENDER_PT_light_paths_caustics": "all surfaces are matt: there are no caustics",
     "CYCLES_RENDER_PT_light_paths_fast_gi": (
         FAST_GI + "; its AO distance is in KOMOREBI_WORLD_PT_ambient_occlusion"
@@ -102,13 +104,13 @@ LEFT_OUT = {
     "CYCLES_OBJECT_PT_shading_caustics": "all surfaces are matt: there are no caustics",
     "CYCLES_OBJECT_PT_lightgroup": LIGHT_GROUPS,
     "CYCLES_OBJECT_PT_visibility_culling": "what is far or outside of the view is rendered too",
-    "CYCLES_OBJECT_PT_light_linking": LAMPS,
-    "CYCLES_OBJECT_PT_shadow_linking": LAMPS,
-    "CYCLES_OBJECT_MT_light_linking_context_menu": LAMPS,
-    "CYCLES_OBJECT_MT_shadow_linking_context_menu": LAMPS,
+    "CYCLES_OBJECT_PT_light_linking": LINKING,
+    "CYCLES_OBJECT_PT_shadow_linking": LINKING,
+    "CYCLES_OBJECT_MT_light_linking_context_menu": LINKING,
+    "CYCLES_OBJECT_MT_shadow_linking_context_menu": LINKING,
     "CYCLES_LIGHT_PT_preview": PREVIEWS,
-    "CYCLES_LIGHT_PT_nodes": LAMPS,
-    "CYCLES_LIGHT_PT_settings": LAMPS,
+    "CYCLES_LIGHT_PT_nodes": LAMP_NODES,
+    "CYCLES_LIGHT_PT_settings": LAMP_SETTINGS,
     "CYCLES_WORLD_PT_preview": PREVIEWS,
     "CYCLES_WORLD_PT_volume": VOLUMES,
     "CYCLES_WORLD_PT_settings": "only of the three below",
@@ -138,8 +140,8 @@ LEFT_OUT = {
     "NODE_CYCLES_WORLD_PT_settings_volume": VOLUMES,
     "NODE_CYCLES_LIGHT_PT_light": COPY,
     "NODE_CYCLES_LIGHT_PT_beam_shape": COPY,
-    "NODE_CYCLES_LIGHT_PT_settings": LAMPS,
-    "draw_make_links": LAMPS,
+    "NODE_CYCLES_LIGHT_PT_settings": LAMP_SETTINGS,
+    "draw_make_links": LINKING,
     "draw_pause": VIEWPORT,
 }
 # Blender's own panels that Cycles shows and we do not, beside those that the add-on excludes.

@@ -42,7 +42,7 @@ bpy.ops.render.render(write_still=True)
         assert re.search(r"Fra:1 Mem:\S+ .*\| Time:\S+ \| ViewLayer \| Sample \d+/100000 \|", line)
         assert "Memory" in line
     assert all("Tile " in k and "Remaining " in k for k in lines[:-1]), lines
-    assert "Without 1 lamp" in lines[-1], "what the method leaves out is in the statistics"
+    assert "1 lamp" in lines[-1], "what lights the scene besides the world is in the statistics"
     assert "Saved: '" in done.output
     assert "Time: " in done.output
     assert len(lines) < 20, "a log must not drown"

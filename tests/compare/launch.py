@@ -34,6 +34,7 @@ class Job:
     view_layer: str | None = None
     flat: bool = False
     world_image: str | None = None
+    lamps: bool = True  # in world mode
     frame: int | None = None
     camera: str | None = None
     stereo: str | None = None

@@ -56,6 +56,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument(
         "--world-image", type=Path, help="light world mode with this equirectangular picture"
     )
+    made.add_argument("--no-lamps", action="store_true", help="world mode: the world's light alone")
     made.add_argument(
         "--out", type=Path, help="folder for pictures (default: build/compare/SCENE-MODE)"
     )
@@ -115,6 +116,7 @@ def jobs(options: argparse.Namespace, scene: Path, mode: str) -> tuple[Job, Job]
         world_image=str(options.world_image.resolve())
         if options.world_image and mode == "world"
         else None,
+        lamps=not options.no_lamps,
         frame=options.frame,
         camera=options.camera,
         stereo=options.stereo,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from array import array
-from collections import Counter
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,6 +14,7 @@ from ..scene_data import InstanceData, ObjectData, SceneData, UIntArray
 from ..unchanged import Unchanged
 from .deform import DeformingShapes
 from .instance_matrices import AllAtOnce, OneByOne, loses_memory
+from .lamps import LampExporter
 from .materials import MaterialExporter
 from .motion import HAIR, SURFACE, InstanceMotion
 from .names import name_of
@@ -41,13 +41,12 @@ def export_instances(
     engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted, unchanged: Unchanged,
     deforming: DeformingShapes | None = None, motion: InstanceMotion | None = None,
 ) -> None:  # fmt: skip
-    """Fills shapes, instances, objects, materials and what was ignored into `data`; `motion` learns
+    """Fills shapes, instances, objects, lamps and materials into `data`; `motion` learns
     which instances there are, and `deforming` which shapes may change."""
     deforming = deforming or DeformingShapes(engine, depsgraph, None)
     exporter = _Exporter(engine, depsgraph, data, wanted, unchanged, deforming, motion)
     exporter.walk()
     data.instances = exporter.groups()
-    data.ignored = dict(exporter.ignored)
 
 
 class _Exporter:
@@ -62,6 +61,7 @@ class _Exporter:
         self._data = data
         self._object2index: dict[int, int] = {}
         self._motion = motion
+        self._lamps = LampExporter(engine, data.lamps)
         self._visibility = Visibility(depsgraph)
         self._materials = MaterialExporter(
             engine, depsgraph.scene, depsgraph.view_layer, data.materials
@@ -75,7 +75,6 @@ class _Exporter:
         self._flags = array("I")
         self._random = array("I")
         self._matrices: OneByOne | AllAtOnce = OneByOne()
-        self.ignored: Counter[str] = Counter()
 
     def walk(self) -> None:
         """Takes every instance. Raises RenderCancelled."""
@@ -91,7 +90,7 @@ class _Exporter:
     def _take(self, subject: Subject, instance: Any, number: int) -> None:
         # A curve, text, surface or metaball comes twice: as itself, and as the mesh that it makes.
         if subject.kind not in TYPES:
-            self._note_ignored(subject, instance.show_self)
+            self._take_other(subject, instance)
             return
         if instance.show_self:
             entry = subject.surface
@@ -137,11 +136,13 @@ class _Exporter:
             warn_object(self._engine, self._depsgraph.scene, original)
         return index
 
-    def _note_ignored(self, subject: Subject, show_self: bool) -> None:
+    def _take_other(self, subject: Subject, instance: Any) -> None:
         kind = subject.kind
+        if not instance.show_self:
+            return
         if kind == "LIGHT":
-            self.ignored["lamp"] += 1
-        elif kind in UNSUPPORTED_TYPES and show_self:
+            self._lamps.take(instance, subject)
+        elif kind in UNSUPPORTED_TYPES:
             what, name = UNSUPPORTED_TYPES[kind], name_of(subject.original)
             reporting.warn(self._engine, f'object "{name}" is {what}, not rendered yet')
 

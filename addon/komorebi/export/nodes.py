@@ -29,17 +29,23 @@ def source(socket: Any) -> Any | None:
 
 def world_output(tree: Any) -> Any | None:
     """The World Output node that counts, or None."""
-    for target in ("CYCLES", "ALL", "EEVEE"):
-        node = tree.get_output_node(target)
-        if node is not None and node.type == "OUTPUT_WORLD":
-            return node
-    return None
+    return _output(tree, "OUTPUT_WORLD")
 
 
 def material_output(tree: Any) -> Any | None:
     """The Material Output node that counts, or None."""
+    return _output(tree, "OUTPUT_MATERIAL")
+
+
+def light_output(tree: Any) -> Any | None:
+    """The Light Output node that counts, or None."""
+    return _output(tree, "OUTPUT_LIGHT")
+
+
+def _output(tree: Any, kind: str) -> Any | None:
+    """What is for Cycles alone comes before what is for all."""
     for target in ("CYCLES", "ALL", "EEVEE"):
         node = tree.get_output_node(target)
-        if node is not None and node.type == "OUTPUT_MATERIAL":
+        if node is not None and node.type == kind:
             return node
     return None

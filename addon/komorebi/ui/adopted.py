@@ -17,7 +17,7 @@ EXCLUDED = {
     "DATA_PT_volume_render": "volumes are not rendered",
     "NODE_DATA_PT_light": "lamps have a panel of ours",
     "NODE_DATA_PT_spot": "lamps have a panel of ours",
-    "OBJECT_PT_shading": "a panel of ours; this one brings light linking, and lamps give no light",
+    "OBJECT_PT_shading": "a panel of ours; this one brings light linking, which is not supported",
     "OBJECT_PT_visibility": "a panel of ours, with the rays that are traced",
     "RENDER_PT_simplify": "a panel of ours: this one would stand above Sampling",
     "RENDER_PT_simplify_greasepencil": "a panel of ours",

@@ -17,6 +17,14 @@ KINDS = {
 }
 
 
+def lamps_unseen() -> list[str]:
+    """Lamps light the scene, but no camera sees them: Komorebi shows none yet."""
+    seen = [t for t in bpy.data.objects if t.type == "LIGHT" and t.visible_camera]
+    for thing in seen:
+        settle(thing, "visible_camera", False)
+    return [f"{len(seen)} lamps hidden from the camera"] if seen else []
+
+
 def lamps_off() -> list[str]:
     """Every lamp at zero power: they stay where they are, since cameras may be aimed at them."""
     for light in bpy.data.lights:

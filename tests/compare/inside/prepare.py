@@ -36,14 +36,16 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
     notes = render_settings.set_size(scene, job["longest"])
     render_settings.set_output(scene)
     layer, more = render_settings.choose_view_layer(scene, job["view_layer"])
-    notes += more + objects.lamps_off() + objects.objects_off()
+    lamps = job["lamps"] and job["mode"] == "world"
+    notes += more + (objects.lamps_unseen() if lamps else objects.lamps_off())
+    notes += objects.objects_off()
     if job["materials"]:
         layer.material_override = None
         notes += materials.make_matt()
     else:
         layer.material_override = engines.clay(job["mode"], job["flat"])
     if not job["materials"] or job["world_image"]:
-        notes += world.set_world(scene, job["mode"], job["world_image"])
+        notes += world.set_world(scene, job["mode"], job["world_image"], lamps)
     if job["mode"] == "ao":
         objects.terminators_off()
         notes += objects.visible_alike()
@@ -53,7 +55,7 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
     notes += camera.ensure_camera(scene, depsgraph)
     notes += camera.supported_camera(scene.camera) + objects.unsupported_instances(depsgraph)
     samples = job["samples"]
-    if any(thing.is_shadow_catcher for thing in scene.objects):
+    if any(t.is_shadow_catcher for t in scene.objects if t.type != "LIGHT"):
         samples *= CATCHER_SAMPLES
         notes.append(f"shadow catchers: {CATCHER_SAMPLES} times the samples")
     if job["stereo"] is not None:

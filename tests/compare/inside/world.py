@@ -11,6 +11,7 @@ import bpy
 from compare.inside.settle import settle, settle_all
 
 STUDIO_LIGHT = "city"
+BLACK = {"the world is black", "there is no world"}
 
 
 def uniform_world(scene: Any, colour: tuple[float, float, float]) -> None:
@@ -113,9 +114,9 @@ def why_not(world: Any) -> str | None:
     )
 
 
-def set_world(scene: Any, mode: str, picture: str | None) -> list[str]:
+def set_world(scene: Any, mode: str, picture: str | None, lamps: bool) -> list[str]:
     """White for `ao`; for `world` the map at `picture`, else the scene's own world, else a studio
-    light."""
+    light; but a black world may stay where there are `lamps`."""
     if mode == "ao":
         uniform_world(scene, (1.0, 1.0, 1.0))
         return []
@@ -123,6 +124,9 @@ def set_world(scene: Any, mode: str, picture: str | None) -> list[str]:
         picture_world(scene, Path(picture))
         return [f"world replaced by {Path(picture).name}, as asked"]
     reason = why_not(scene.world)
+    if lamps and reason in BLACK:
+        uniform_world(scene, (0.0, 0.0, 0.0))
+        return []
     if reason is not None:
         picture_world(scene, studio_light())
         return [f"{reason}: replaced by Blender's studio light {STUDIO_LIGHT}"]

@@ -103,7 +103,7 @@ TEST(Sampler, IsAPureFunction) {
 
 TEST(Sampler, DimensionTableIsFixed) {
   EXPECT_EQ(vertex_dimension(0, kVertexLightDirection), 8u);
-  EXPECT_EQ(vertex_dimension(0, kVertexLightChoice), 10u);
+  EXPECT_EQ(vertex_dimension(0, kVertexLamp), 10u);
   EXPECT_EQ(vertex_dimension(2, kVertexScatter), 28u);
 }
 

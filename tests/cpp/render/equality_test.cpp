@@ -56,6 +56,27 @@ Settings small_settings(Method method) {
   return s;
 }
 
+/// A lamp of every kind, and enough of them for a tree.
+void add_lamps(Scene& scene) {
+  LampInput lamp;
+  lamp.radiance = Vec3d(2.0, 3.0, 4.0);
+  lamp.angle = 0.1;
+  lamp.radius = 0.3;
+  lamp.size_u = 1.0;
+  lamp.size_v = 0.5;
+  for (std::uint32_t i = 0; i < 24; ++i) {
+    lamp.kind = static_cast<LampKind>(i % 8);
+    lamp.world_from_lamp = glm::rotate(
+        glm::translate(Mat4d(1.0), Vec3d(0.6 * i - 6.0, 1.7 * (i % 5) - 3.0, 2.0 + 0.3 * (i % 3))),
+        0.1 * i, Vec3d(0.3, 1.0, 0.0));
+    lamp.spread = i % 2 ? kPi : 2.0;
+    lamp.spot_angle = i % 3 ? 0.0 : 1.5;
+    lamp.spot_blend = 0.3;
+    lamp.flags = i % 7 == 3 ? 1 : i % 7 == 4 ? 2 : 0;  // LampFlag
+    scene.add_lamp(lamp);
+  }
+}
+
 /// Things that every pass has something to tell of: a shadow catcher, a hole, objects without
 /// shadow or not to be seen, materials and UVs, and a camera that will be elsewhere.
 /// @param lottery  of what has the first material, all of it
@@ -99,6 +120,7 @@ std::shared_ptr<Scene> telling_scene(const Lottery* lottery = nullptr) {
   tables.value_count = 4;
   tables.values = {0.0f, 0.25f, 2.0f, 1.0f, 9.0f, -300.0f, 0.1f, 1.0f};
   scene->set_tables(std::move(tables));
+  add_lamps(*scene);
   scene->set_world_environment(gradient_map(), 0.7, Mat3d(1.0));
   CameraDesc camera = camera_at({5, -4, 3}, {0, 0, 0.8}, 150, 90);
   const Mat4d rest = glm::inverse(glm::lookAt(Vec3d(5, -4, 3), Vec3d(0, 0, 0.8), Vec3d(0, 0, 1)));
@@ -182,6 +204,7 @@ std::shared_ptr<Scene> moving_scene(Builder builder = Builder::kLinear,
     scene->set_hit_filter(lottery->filter(), {1});
   }
   scene->set_tables(std::move(tables));
+  add_lamps(*scene);
   scene->set_world_environment(gradient_map(), 0.7, Mat3d(1.0));
   return committed(scene);
 }
@@ -207,7 +230,7 @@ void expect_batches_as_one_ray(const std::shared_ptr<Scene>& scene, Settings set
   RenderContext context = make_context(*scene, settings_, filter.view());
   SkyGuide guide;
   guide.prepare(*scene, shared_pool(), Cancel(), context);
-  Film film(settings_.region, settings_, scene->max_radiance(), scene->has_catchers(),
+  Film film(settings_.region, settings_, max_radiance(*scene, settings_), scene->has_catchers(),
             scene->tables().max_value());
   for (const Rect& cell : cells_of(settings_.region)) {
     TileSums sums;
