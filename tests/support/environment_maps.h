@@ -25,6 +25,32 @@ inline Environment random_map(std::uint32_t width, std::uint32_t height, std::ui
   return make_map(width, height, texels);
 }
 
+/// A random map of numbers that this storage, and none that takes less room, holds exactly; one in
+/// eight is tiny.
+inline Environment stored_map(std::uint32_t width, std::uint32_t height, std::uint64_t seed,
+                              LightStorage storage) {
+  std::mt19937_64 engine(seed);
+  std::vector<float> texels;
+  for (std::uint32_t i = 0; i < width * height; ++i) {
+    const bool tiny = engine() % 8 == 0;
+    const auto exponent = static_cast<std::uint32_t>(engine() % 8);
+    if (storage == LightStorage::kRgbe) {
+      const std::uint32_t rgb = static_cast<std::uint32_t>(engine()) & 0xffffffu;
+      const Vec3 value = rgbe_texel(rgb | (tiny ? 15u : 124u + exponent) << 24);
+      texels.insert(texels.end(), &value.x, &value.x + 3);
+    } else {
+      for (int c = 0; c < 3; ++c) {
+        const auto fraction = static_cast<std::uint16_t>(engine() % 1024);
+        const auto half =
+            static_cast<std::uint16_t>((tiny ? 0u : (12u + exponent) << 10) | fraction);
+        const float any = static_cast<float>(engine() >> 40) * 0x1p-24f;
+        texels.push_back(storage == LightStorage::kHalf ? float_from_half(half) : any);
+      }
+    }
+  }
+  return make_map(width, height, texels);
+}
+
 /// A dim sky with a sun of one texel that has nearly all of the energy.
 inline Environment sunny_map(std::uint32_t width, std::uint32_t height, std::uint32_t sun_column,
                              std::uint32_t sun_row, float sun, float sky = 0.01f) {

@@ -134,6 +134,18 @@ TEST(LightKernel, ProductOfMapAndCosine) {
   expect_equal_to_scalar(context, 16, 4000);
 }
 
+TEST(LightKernel, MapsOfEveryStorage) {
+  RenderContext context;
+  context.method = Method::kWorldLight;
+  for (const auto storage : {LightStorage::kHalf, LightStorage::kRgbe}) {
+    const Environment map = testing::stored_map(150, 70, 3, storage);
+    context.sky = map.view(1.7);
+    ASSERT_EQ(context.sky.storage, storage);
+    context.product = map.product_table().view();
+    expect_equal_to_scalar(context, 3, 2000);
+  }
+}
+
 TEST(LightKernel, OtherStrategies) {
   const Environment map = testing::random_map(30, 20, 5);
   RenderContext context;
