@@ -49,6 +49,19 @@ const AttributeView* find_attribute(const MeshView& mesh, const char* name) {
   return nullptr;
 }
 
+/// How far the barycentrics u and v move when the point moves by `step` in its triangle.
+Vec2 barycentric_step(const Placed& placed, const ShadeTask& task, const Vec3& step) {
+  if (is_round(placed.mesh->kind)) return Vec2(0.0f);
+  const Corners at = detail::triangle_corners(*placed.mesh, task.hit.primitive, task.time);
+  const Vec3 b = at.corner[1] - at.corner[0], c = at.corner[2] - at.corner[0];
+  const Vec3 local = placed.instance->local_from_world * step;
+  const float bb = glm::dot(b, b), bc = glm::dot(b, c), cc = glm::dot(c, c);
+  const float area = bb * cc - bc * bc;
+  if (!(area > 0.0f)) return Vec2(0.0f);
+  const float along_b = glm::dot(local, b), along_c = glm::dot(local, c);
+  return Vec2(cc * along_b - bc * along_c, bb * along_c - bc * along_b) / area;
+}
+
 /// Along the surface, around the vertical axis through the middle of the object (Cycles' Tangent).
 Vec3 tangent(const Placed& placed, const ShadeTask& task) {
   float generated[4] = {0.5f, 0.5f, 0.5f, 1.0f};
@@ -130,6 +143,11 @@ const ShadePoints& MaterialPoints::fill(const RenderContext& context, const Prog
   put(PointInput::kObjectLocation, [&](const ShadeTask& t) {
     return Vec3(Placed(context, t).object_location() + context.origin);
   });
+  constexpr PointInput kAxes[] = {PointInput::kObjectX, PointInput::kObjectY, PointInput::kObjectZ};
+  for (int axis = 0; axis < 3; ++axis) {
+    put(kAxes[axis],
+        [&](const ShadeTask& t) { return Placed(context, t).instance->world_from_local[axis]; });
+  }
   put(PointInput::kObjectColor, [&](const ShadeTask& t) { return object(t).color; });
   put_float(PointInput::kObjectAlpha, [&](const ShadeTask& t) { return object(t).alpha; });
   put_float(PointInput::kBackfacing,
@@ -161,6 +179,11 @@ void MaterialPoints::fill_attributes(const RenderContext& context, const Program
   for (std::size_t a = 0; a < names.size(); ++a) {
     float* const to = &attributes_[4 * kLanes * a];
     for (std::size_t c = 0; c < 4; ++c) attribute_columns_[4 * a + c] = to + c * kLanes;
+    // "dx:" and "dy:" before a name: how much it changes over that step
+    const bool changes = names[a].starts_with("dx:") || names[a].starts_with("dy:");
+    const auto way = names[a].starts_with("dy:") ? PointInput::kDy : PointInput::kDx;
+    const bool steps = changes && program.asks(way);
+    const Column* const step = inputs_[static_cast<std::size_t>(way)];
     const MeshView* known = nullptr;
     const AttributeView* found = nullptr;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -168,10 +191,19 @@ void MaterialPoints::fill_attributes(const RenderContext& context, const Program
       const MeshView& mesh = context.scene.meshes[context.scene.instances[hit.instance].mesh];
       if (&mesh != known) {
         known = &mesh;
-        found = find_attribute(mesh, names[a].c_str());
+        found = find_attribute(mesh, names[a].c_str() + (changes ? 3 : 0));
       }
       float value[4] = {0.0f, 0.0f, 0.0f, 0.0f};
-      if (found != nullptr) attribute_at(mesh, *found, hit.primitive, hit.u, hit.v, value);
+      if (found != nullptr && (!changes || steps)) {
+        attribute_at(mesh, *found, hit.primitive, hit.u, hit.v, value);
+      }
+      if (found != nullptr && steps) {
+        float there[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+        const Vec2 moved = barycentric_step(Placed(context, tasks[i]), tasks[i],
+                                            Vec3(step[0][i], step[1][i], step[2][i]));
+        attribute_at(mesh, *found, hit.primitive, hit.u + moved.x, hit.v + moved.y, there);
+        for (int c = 0; c < 4; ++c) value[c] = there[c] - value[c];
+      }
       for (std::size_t c = 0; c < 4; ++c) to[c * kLanes + i] = value[c];
     }
   }
