@@ -17,12 +17,14 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
+import bounces
 import cameras
 import closed_forms
 import deforming
 import demo
 import features
 import instancing
+import materials
 import motion
 import settings
 import strands
@@ -37,6 +39,8 @@ SCENES: dict[str, Callable[[], None]] = {
     **visibility.SCENES,
     **strands.SCENES,
     **cameras.SCENES,
+    **bounces.SCENES,
+    **materials.SCENES,
     **instancing.SCENES,
     **deforming.SCENES,
     **motion.SCENES,

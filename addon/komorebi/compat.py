@@ -20,6 +20,12 @@ LONG_PASS_NAMES = VERSION >= (5, 0, 0)  # "Material Index", not "IndexMA"
 FLAT_NORMAL_MAPS = VERSION < (4, 0, 0)  # strength leans the mapped normal, not the map's colour
 NORMALS_AS_DIRECTIONS = VERSION < (4, 0, 0)  # so the node Vector Transform turned them
 CORNER_NORMALS = VERSION >= (4, 1, 0)  # mesh.corner_normals, no auto smooth
+NOISE_REPEATS = VERSION >= (
+    4,
+    1,
+    0,
+)  # every 100,000 cells, since floats tell few places apart there
+VORONOI_PCG = VERSION >= (5, 0, 0)  # hashes cells of two dimensions and more
 
 
 def cycles_or(block: Any, otherwise: Any) -> Any:
@@ -190,8 +196,11 @@ def face_materials(mesh: Any) -> IntArray | None:
 def corner_uvs(mesh: Any) -> FloatArray | None:
     """The UV map that is used for renders [corners, 2]; None: there is none."""
     layer = next((layer for layer in mesh.uv_layers if layer.active_render), None)
-    if layer is None:
-        return None
+    return None if layer is None else uvs_of_layer(mesh, layer)
+
+
+def uvs_of_layer(mesh: Any, layer: Any) -> FloatArray:
+    """One of a mesh's UV maps [corners, 2]."""
     result = np.empty(len(mesh.loops) * 2, np.float32)
     if hasattr(layer, "uv"):  # from 3.5
         layer.uv.foreach_get("vector", result)

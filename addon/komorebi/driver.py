@@ -129,6 +129,8 @@ def render_frame(engine: Any, _depsgraph: Any, frame: Frame) -> None:
         lambda: native_scene.load(native, frame.scene, _expected_rays(frame), threads, cancel),
     )  # fmt: skip
     _warn_environment(engine, parts.environment)
+    for sentence in [*parts.warnings, *(s for mesh in parts.meshes for s in mesh.warnings)]:
+        reporting.warn(engine, sentence)
     for view in frame.views:
         _render_view(engine, frame, parts, view)
         if engine.test_break():
@@ -141,7 +143,8 @@ def _expected_rays(frame: Frame) -> float:
     settings = frame.settings
     light = settings["light_samples"] or core.load().AUTOMATIC_LIGHT_SAMPLES
     pixels = (x_max - x_min) * (y_max - y_min) * len(frame.views)
-    return float(pixels) * settings["samples"] * (1 + light)
+    per_bounce = 2  # the one that finds the next surface, and its light ray
+    return float(pixels) * settings["samples"] * (1 + light + per_bounce * settings["bounces"])
 
 
 def _native_work(engine: Any, cancel: Any, work: Callable[[], T]) -> T:

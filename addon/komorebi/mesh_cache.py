@@ -7,14 +7,14 @@ both known before its arrays are all read, most of them never are.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from numpy.typing import NDArray
 
 from . import cache
-from .scene_data import CurveData, KnownShape, MeshKey, PointData
+from .scene_data import Attribute, CurveData, KnownShape, MeshKey, PointData
 
 
 @dataclass(slots=True)
@@ -44,9 +44,19 @@ def round_key(core: Any, data: CurveData | PointData) -> MeshKey:
     if isinstance(data, CurveData):
         kind = f"curves {data.shape} {data.subdivisions}".encode()
         geometry = kind + digest(core, (*places, data.curve_offsets))
-        shading = (data.curve_materials, data.curve_uvs, data.step_positions)
-        return MeshKey(geometry, digest(core, shading))
-    return MeshKey(b"points" + digest(core, places), digest(core, (data.step_positions,)))
+        shading = digest(core, (data.curve_materials, data.curve_uvs, data.step_positions))
+    else:
+        geometry = b"points" + digest(core, places)
+        shading = digest(core, (data.step_positions,))
+    return MeshKey(geometry, shading + attribute_digest(core, data.attributes))
+
+
+def attribute_digest(core: Any, attributes: Mapping[str, Attribute]) -> bytes:
+    """Of named arrays; nothing where there are none."""
+    if not attributes:
+        return b""
+    names = repr([(name, a.domain) for name, a in attributes.items()]).encode()
+    return names + digest(core, (a.values for a in attributes.values()))
 
 
 def digest(core: Any, arrays: Iterable[NDArray[Any] | None], threads: int = 0) -> bytes:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from . import cache, dump, native_surfaces, native_world
+from . import cache, dump, native_programs, native_surfaces, native_texture, native_world
 from .cryptomatte import name_id
 from .mesh_cache import KnownMesh
 from .scene_data import (
@@ -32,6 +32,8 @@ class Parts:
     environment: Any | None = None  # core.Environment
     world_color: tuple[float, ...] = (0.0, 0.0, 0.0)  # where there is none
     world_program: Any | None = None  # core.Program, what camera rays see
+    programs: Any = None  # native_programs.Programs
+    warnings: list[str] = field(default_factory=list)
     builder: str = "LINEAR"  # of the trees that had to be built
 
 
@@ -42,14 +44,16 @@ def load(core: Any, data: SceneData, expected_rays: float, threads: int, cancel:
     ValueError and RuntimeError with a sentence, core.Cancelled.
     """
     image_key = native_world.key(core, data.world, threads)
-    cache.make_room({*(_key(mesh).geometry for mesh in data.meshes), image_key})
+    textures = native_texture.cache_keys(native_programs.images(data))
+    cache.make_room({*(_key(mesh).geometry for mesh in data.meshes), image_key, *textures})
     primitives = sum(mesh.primitive_count for mesh in data.meshes)
     builder = core.choose_builder(primitives, expected_rays)
     parts = Parts(builder=builder)
     for index, mesh in enumerate(data.meshes):
         parts.meshes.append(_mesh(core, mesh, builder, threads, cancel))
         data.meshes[index] = None  # type: ignore[call-overload]
-    world = native_world.load(core, data.world, image_key, threads, cancel)
+    parts.programs = native_programs.load(core, data, threads, parts.warnings)
+    world = native_world.load(core, data.world, image_key, parts.programs, threads, cancel)
     parts.environment, parts.world_color, parts.world_program = world
     return parts
 
@@ -67,7 +71,9 @@ def build(
             name=group.name, motion=group.motion,
         )  # fmt: skip
     scene.set_tables(**tables(data))
-    scene.set_surfaces(native_surfaces.surfaces(core, data.materials), _random(data.instances))
+    scene.set_surfaces(
+        native_surfaces.surfaces(parts.programs, data.materials), _random(data.instances)
+    )
     world = data.world
     if parts.environment is None:
         scene.set_world_color(parts.world_color)
@@ -158,19 +164,20 @@ def _native_mesh(
     cancel: Any,
     same_geometry: Any | None,
 ) -> Any:
+    attributes = {name: (a.domain, a.values) for name, a in mesh.attributes.items()}
     if isinstance(mesh, CurveData):
         return core.Mesh.from_curves(
             mesh.name, mesh.positions, mesh.radii, mesh.curve_offsets, shape=mesh.shape,
             subdivisions=mesh.subdivisions, curve_materials=mesh.curve_materials,
             curve_uvs=mesh.curve_uvs, motion_positions=mesh.motion_positions,
             motion_radii=mesh.motion_radii, step_positions=mesh.step_positions,
-            builder=builder, threads=threads, cancel=cancel,
+            attributes=attributes, builder=builder, threads=threads, cancel=cancel,
         )  # fmt: skip
     if isinstance(mesh, PointData):
         return core.Mesh.from_points(
             mesh.name, mesh.positions, mesh.radii, motion_positions=mesh.motion_positions,
             motion_radii=mesh.motion_radii, step_positions=mesh.step_positions,
-            builder=builder, threads=threads, cancel=cancel,
+            attributes=attributes, builder=builder, threads=threads, cancel=cancel,
         )  # fmt: skip
     return core.Mesh(
         mesh.name, mesh.positions, mesh.corner_verts, mesh.face_offsets,
@@ -178,6 +185,6 @@ def _native_mesh(
         vertex_normals=mesh.vertex_normals, smooth_faces=mesh.smooth_faces,
         face_materials=mesh.face_materials, corner_uvs=mesh.corner_uvs,
         motion_positions=mesh.motion_positions, motion_normals=mesh.motion_normals,
-        step_positions=mesh.step_positions,
+        step_positions=mesh.step_positions, attributes=attributes,
         builder=builder, threads=threads, cancel=cancel, same_geometry=same_geometry,
     )  # fmt: skip

@@ -5,26 +5,26 @@ from __future__ import annotations
 from collections import Counter
 from typing import Any
 
-from .native_world import program
+from .native_programs import Programs
 from .scene_data import Materials, SurfaceData, SurfacePrograms
 
 
-def surfaces(core: Any, materials: Materials) -> list[tuple[Any, Any, Any]]:
+def surfaces(programs: Programs, materials: Materials) -> list[tuple[Any, Any, Any]]:
     """Of each material its surface to camera rays, to bounces and to light rays."""
-    return [_surface(core, m.surface) for m in materials.materials if m.surface is not None]
+    return [_surface(programs, m.surface) for m in materials.materials if m.surface is not None]
 
 
-def _surface(core: Any, data: SurfaceData) -> tuple[Any, Any, Any]:
+def _surface(programs: Programs, data: SurfaceData) -> tuple[Any, Any, Any]:
     return (
-        _programs(core, data.camera),
-        None if data.bounce is None else _programs(core, data.bounce),
-        None if data.shadow is None else program(core, data.shadow),
+        _programs(programs, data.camera),
+        None if data.bounce is None else _programs(programs, data.bounce),
+        None if data.shadow is None else programs.program(data.shadow),
     )
 
 
-def _programs(core: Any, data: SurfacePrograms) -> Any:
+def _programs(programs: Programs, data: SurfacePrograms) -> Any:
     lobes = [(lobe.transmits, lobe.has_normal) for lobe in data.lobes]
-    return core.SurfaceProgram(program(core, data.program), lobes)
+    return programs.core.SurfaceProgram(programs.program(data.program), lobes)
 
 
 def simplified(materials: Materials) -> str:

@@ -9,7 +9,8 @@ from typing import Any
 
 from . import cache
 from .mesh_cache import digest
-from .scene_data import EnvironmentImage, ProgramData, WorldData
+from .native_programs import Programs
+from .scene_data import EnvironmentImage, WorldData
 
 # Columns of a map that is made from a program, unless the scene says how many: its lights are as
 # small as people build them into gradients and ramps, and images keep their own size.
@@ -27,17 +28,22 @@ def key(core: Any, world: WorldData, threads: int) -> bytes | None:
 
 
 def load(
-    core: Any, world: WorldData, known_as: bytes | None, threads: int, cancel: Any
+    core: Any,
+    world: WorldData,
+    known_as: bytes | None,
+    programs: Programs,
+    threads: int,
+    cancel: Any,
 ) -> tuple[Any | None, tuple[float, ...], Any | None]:
     """The Environment (None: it is a colour), the colour, the camera's program (None: the same)."""
     seen = world.camera_program
-    shown = None if seen is None else program(core, seen)
+    shown = None if seen is None else programs.program(seen)
     if world.image is not None and known_as is not None:
         environment = cache.get(known_as, partial(_native_environment, core, world.image))
         return environment, world.color, shown
     if world.program is None or known_as is None:
         return None, world.color, shown
-    light = program(core, world.program)
+    light = programs.program(world.program)
     color = tuple(light.constants)
     if None not in color:
         same = shown is not None and tuple(shown.constants) == color
@@ -50,11 +56,6 @@ def load(
         ),
     )
     return environment, world.color, shown
-
-
-def program(core: Any, data: ProgramData) -> Any:
-    """The core's Program."""
-    return core.Program(data.name, data.ops, list(data.outputs))
 
 
 def _size(world: WorldData) -> int:

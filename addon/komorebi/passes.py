@@ -119,7 +119,7 @@ SWITCHES = (
     Switch(_C, "use_pass_volume_scatter", "", "", ("Volume Scatter",), "RGB", _COLOR),
     Switch(_C, "use_pass_volume_transmit", "", "", ("Volume Transmit",), "RGB", _COLOR),
     Switch(_C, "use_pass_volume_majorant", "", "", ("Volume Majorant",), "Z", _VALUE),
-    Switch(_L, "use_pass_emit", "", "", ("Emit", "Emission"), "RGB", _COLOR),
+    Switch(_L, "use_pass_emit", "LIGHT", "Emission", ("Emit", "Emission"), "RGB", _COLOR, "Emission"),
     Switch(_L, "use_pass_environment", "LIGHT", "Environment", ("Env", "Environment"), "RGB", _COLOR, "Environment"),
     Switch(_L, "use_pass_shadow", "", "", ("Shadow",), "RGB", _COLOR),
     Switch(_L, "use_pass_ambient_occlusion", "LIGHT", "Ambient Occlusion", ("AO", "Ambient Occlusion"), "RGB", _COLOR, "Ambient Occlusion"),

@@ -82,7 +82,8 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
     )  # fmt: skip
     light_samples: IntProperty(
         name="Light Samples",
-        description="Light rays for each camera sample; 0 is automatic: 8, or 4 where better",
+        description="Light rays for each camera sample; 0 is automatic: 8, or 4 where "
+        "better, with bounces down to 1",
         default=0, min=0, max=1024,
     )  # fmt: skip
     sample_offset: IntProperty(
@@ -127,6 +128,31 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         name="Clay Color", description="Colour of every surface under clay",
         subtype="COLOR", size=3, default=(0.8, 0.8, 0.8), min=0.0, max=1.0,
     )  # fmt: skip
+    bounces: IntProperty(
+        name="Bounces",
+        description="How often light goes from surface to surface under World Light: 0 is what "
+        "comes straight from the world; each more brightens what faces other surfaces",
+        default=2, min=0, max=1024, soft_max=16,
+    )  # fmt: skip
+    # Not Blender's ao_bounces, which are those of Fast GI.
+    ao_indirect_bounces: IntProperty(
+        name="Bounces",
+        description="How often the white sky's light goes from surface to surface before it comes "
+        "to what is seen: 0 is plain ambient occlusion",
+        default=0, min=0, max=1024, soft_max=16,
+    )  # fmt: skip
+    sample_clamp_direct: FloatProperty(
+        name="Direct Light",
+        description="Most that a sample may bring without a bounce, to the picture too: takes away "
+        "bright specks, and light with them; 0 is no limit",
+        default=0.0, min=0.0, max=1e8,
+    )  # fmt: skip
+    sample_clamp_indirect: FloatProperty(
+        name="Indirect Light",
+        description="Most that a sample may bring after each bounce: takes away bright specks, and "
+        "light with them; 0 is no limit",
+        default=10.0, min=0.0, max=1e8,
+    )  # fmt: skip
     environment_sampling: EnumProperty(
         name="Environment Sampling", description="How rays towards the world are chosen",
         items=ENVIRONMENT_SAMPLINGS, default="PRODUCT",
@@ -140,6 +166,12 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         description="Columns of pixels of the map that lights the scene where the world is more "
         "than one picture; 0 is automatic: 1024, or as many as its largest picture has",
         default=0, min=0, max=16384,
+    )  # fmt: skip
+    texture_limit: IntProperty(
+        name="Texture Limit",
+        description="Memory in MiB that pictures on surfaces may take together; when there are "
+        "more, the largest are rendered at half their width, and a warning says so",
+        default=1024, min=16, soft_max=65536,
     )  # fmt: skip
     filter_width: FloatProperty(
         name="Width", description="Width of the pixel filter",

@@ -27,6 +27,14 @@ class MeshKey:
     shading: bytes
 
 
+@dataclass(frozen=True, slots=True)
+class Attribute:
+    """A named array on a shape, with a row an element of its domain."""
+
+    domain: str  # POINT, CORNER, FACE or CURVE
+    values: FloatArray  # [elements, 1 to 4]; colours are linear
+
+
 @dataclass(slots=True)
 class MeshData:
     """One mesh in its own space; face f has corners face_offsets[f] to face_offsets[f + 1] − 1."""
@@ -48,6 +56,7 @@ class MeshData:
     motion_normals: FloatArray | None = None  # [2k, corners or vertices, 3]; None: always the same
     # For the pass Vector alone: positions one frame before and after, of a mesh that stands still.
     step_positions: FloatArray | None = None  # [2, vertices, 3]
+    attributes: dict[str, Attribute] = field(default_factory=dict)
     key: MeshKey | None = None
 
     @property
@@ -72,6 +81,7 @@ class CurveData:
     motion_positions: FloatArray | None = None  # [2k, keys, 3]
     motion_radii: FloatArray | None = None  # [2k, keys]; None: always the same
     step_positions: FloatArray | None = None  # [2, keys, 3]
+    attributes: dict[str, Attribute] = field(default_factory=dict)
     key: MeshKey | None = None
 
     @property
@@ -90,6 +100,7 @@ class PointData:
     motion_positions: FloatArray | None = None  # [2k, points, 3]
     motion_radii: FloatArray | None = None  # [2k, points]; None: always the same
     step_positions: FloatArray | None = None  # [2, points, 3]
+    attributes: dict[str, Attribute] = field(default_factory=dict)
     key: MeshKey | None = None
 
     @property
@@ -241,6 +252,22 @@ class SurfaceData:
 
 
 @dataclass(slots=True)
+class TextureImage:
+    """A picture for an Image Texture: a file, a packed file's bytes, pixels, or tiles (UDIM)."""
+
+    name: str
+    key: bytes  # the same for pictures that look the same
+    color_space: str = "LINEAR"  # or SRGB, NON_COLOR
+    alpha_mode: str = "STRAIGHT"  # or PREMUL, CHANNEL_PACKED, NONE
+    matrix: DoubleArray | None = None  # [3, 3] linear Rec. 709 from other primaries
+    path: str | None = None
+    packed: bytes | None = None
+    # [height, width, 4] uint8, straight, or [height, width, 1 or 4] float32, weighed by alpha
+    pixels: Any = None
+    tiles: dict[int, TextureImage] | None = None  # by UDIM number
+
+
+@dataclass(slots=True)
 class EnvironmentImage:
     """An equirectangular picture: either a file for the core to read, or pixels."""
 
@@ -307,6 +334,7 @@ class SceneData:
     instances: list[InstanceData] = field(default_factory=list)
     objects: list[ObjectData] = field(default_factory=list)
     materials: Materials = field(default_factory=Materials)
+    texture_limit: int = 1 << 30  # bytes of all textures together
     ignored: dict[str, int] = field(default_factory=dict)  # kind of object → how many
 
     @property

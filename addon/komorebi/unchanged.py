@@ -11,7 +11,8 @@ from typing import Any
 
 from .scene_data import MeshKey
 
-Address = tuple[int, int, bool]  # of evaluated data and original object; with UVs
+# Of evaluated data and original object; with UVs, and the names of attributes.
+Address = tuple[int, int, bool, frozenset[str]]
 
 
 class Unchanged:

@@ -24,11 +24,15 @@ Hit test_everything(const SceneView& scene, const Ray& ray) {
     const InstanceView& instance = instance_at(scene, index, ray.time, room);
     if (!enter_instance(instance, ray, world, &local)) continue;
     const MeshView& mesh = scene.meshes[instance.mesh];
+    const HitTest test(scene, index, ray);
     const std::uint32_t self = index == ray.self_instance ? ray.self_primitive : kNone;
     if (mesh.kind == PrimitiveKind::kMovingTriangle) {
       const SetPlace place = set_place(mesh.position_sets, ray.time);
       for (std::uint32_t i = 0; i < mesh.triangle_count; ++i) {
-        const bool found = test_moving_triangle(mesh, local, place, self, index, i, &closest);
+        const auto meet = [&](Closest* to) {
+          return test_moving_triangle(mesh, local, place, self, index, i, to);
+        };
+        const bool found = test.keep(meet, &closest);
         if (kAny && found) return closest.hit;
       }
       continue;
@@ -37,7 +41,10 @@ Hit test_everything(const SceneView& scene, const Ray& ray) {
       const RoundRay round =
           make_round_ray(local, local_direction(instance, ray), round_time(mesh, ray.time));
       for (std::uint32_t i = 0; i < mesh.primitive_count * mesh.segment_parts; ++i) {
-        const bool found = test_round_item(mesh, round, self, index, i, &closest);
+        const auto meet = [&](Closest* to) {
+          return test_round_item(mesh, round, self, index, i, to);
+        };
+        const bool found = test.keep(meet, &closest);
         if (kAny && found) return closest.hit;
       }
       continue;
@@ -45,7 +52,10 @@ Hit test_everything(const SceneView& scene, const Ray& ray) {
     for (std::uint32_t i = 0; i < mesh.triangle_count; ++i) {
       const Vec3 a = corner(mesh, i, 0), b = corner(mesh, i, 1), c = corner(mesh, i, 2);
       if (is_degenerate(a, b, c)) continue;
-      const bool found = test_triangle(local, ray, index, i, a, b, c, OpaqueFilter{}, &closest);
+      const auto meet = [&](Closest* to) {
+        return test_triangle(local, ray, index, i, a, b, c, to);
+      };
+      const bool found = test.keep(meet, &closest);
       if (kAny && found) return closest.hit;
     }
   }

@@ -167,6 +167,34 @@ HWY_INLINE std::uint32_t find_in_mesh(const MeshView& mesh, std::uint32_t instan
   return all_found;
 }
 
+/// Rays of `bundle` that find something nearer in a filtered instance.
+HWY_NOINLINE std::uint32_t find_filtered(const SceneView& scene, const MeshView& mesh,
+                                         std::uint32_t instance, const WorldBundle& world,
+                                         const LocalBundle& bundle, std::uint32_t rays,
+                                         Nearest& nearest) {
+  Candidates candidates(scene, world);
+  std::uint32_t all_found = 0;
+  const auto walk = [&](const TreeView& tree, std::uint32_t now, const auto& list,
+                        const auto& address) HWY_ATTR {
+    const auto visit = [&](std::uint32_t leaf, std::uint32_t active) HWY_ATTR {
+      std::uint32_t found = 0;
+      list(leaf, active, [&](std::uint32_t i, const Hit& hit) {
+        if (nearest.closest[i].is_better(hit)) candidates.add(i, hit);
+      });
+      candidates.ask([&](std::uint32_t i, const Hit& hit) {
+        if (!nearest.closest[i].keep(hit)) return;
+        nearest.limit[i] = nearest.closest[i].limit;
+        found |= 1u << i;
+      });
+      all_found |= found;
+      return found;
+    };
+    walk_closest(tree, bundle.rays, bundle.slab, now, nearest, visit, address);
+  };
+  each_tree_of_any_kind(mesh, instance, bundle, rays, walk);
+  return all_found;
+}
+
 /// The closest hits of the first `count` rays of `bundle`.
 HWY_INLINE void intersect_together(const SceneView& scene, WorldBundle& bundle, std::uint32_t count,
                                    Nearest& nearest) {
@@ -181,7 +209,11 @@ HWY_INLINE void intersect_together(const SceneView& scene, WorldBundle& bundle, 
     std::uint32_t index;
     active = enter_leaf(scene, entry, bundle, active, local, index);
     if (active == 0) return 0u;
-    return find_in_mesh(scene.meshes[scene.instances[index].mesh], index, local, active, nearest);
+    const MeshView& mesh = scene.meshes[scene.instances[index].mesh];
+    if (HWY_UNLIKELY(scene.instances[index].filtered)) {
+      return find_filtered(scene, mesh, index, bundle, local, active, nearest);
+    }
+    return find_in_mesh(mesh, index, local, active, nearest);
   };
   const auto address = [&](std::uint32_t child) HWY_ATTR -> const void* {
     return scene.tree.nodes + (child & Waiting::kLeaf ? 0 : child);
@@ -205,7 +237,7 @@ void intersect(const SceneView& scene, const RaySpan& rays, Hit* hits) {
       hn::Store(ray, di, at.ray);
       hn::Store(ray, di, at.point);
       load_rays(rays, at, bundle, k);
-      if (scene.moves) load_times(rays, at, bundle, k);
+      load_more(scene, rays, at, bundle, k);
     }
     join_masks(rays, bundle, now);
     Nearest nearest;

@@ -91,6 +91,14 @@ class OpenCluster {
   HWY_INLINE bool find_closest(const LocalBundle& bundle, std::uint32_t i, std::uint32_t instance,
                                Closest& closest) const {
     bool found = false;
+    each_hit(bundle, i, instance, [&](const Hit& hit) HWY_ATTR { found |= closest.keep(hit); });
+    return found;
+  }
+
+  /// Calls visit(hit) for all of the triangles that ray i hits.
+  template <class Visit>
+  HWY_INLINE void each_hit(const LocalBundle& bundle, std::uint32_t i, std::uint32_t instance,
+                           const Visit& visit) const {
     each_part(bundle, i, [&](const Part& part) HWY_ATTR {
       const BoxTag d;
       BoxVec t, determinant;
@@ -102,13 +110,12 @@ class OpenCluster {
         for (; good != 0; good &= good - 1) {
           const auto k = static_cast<std::uint32_t>(__builtin_ctz(good));
           const auto primitive = cluster_.primitive(static_cast<std::uint32_t>(part.first) + k);
-          found |= closest.keep({all_t[k], u[k], v[k], instance, primitive});
+          visit(Hit{all_t[k], u[k], v[k], instance, primitive});
         }
       }
-      if (part.inside != part.sure) found |= keep_hits(bundle, i, part, instance, closest);
+      if (part.inside != part.sure) each_doubtful_hit(bundle, i, part, instance, visit);
       return false;
     });
-    return found;
   }
 
  private:
@@ -280,14 +287,13 @@ class OpenCluster {
     return each_doubtful(bundle, i, part, [](const TriangleHit&, std::uint32_t) { return true; });
   }
 
-  HWY_NOINLINE bool keep_hits(const LocalBundle& bundle, std::uint32_t i, const Part& part,
-                              std::uint32_t instance, Closest& closest) const {
-    bool found = false;
+  template <class Visit>
+  HWY_NOINLINE void each_doubtful_hit(const LocalBundle& bundle, std::uint32_t i, const Part& part,
+                                      std::uint32_t instance, const Visit& visit) const {
     each_doubtful(bundle, i, part, [&](const TriangleHit& hit, std::uint32_t k) {
-      found |= closest.keep({hit.t, hit.u, hit.v, instance, cluster_.primitive(k)});
+      visit(Hit{hit.t, hit.u, hit.v, instance, cluster_.primitive(k)});
       return false;
     });
-    return found;
   }
 
   const ClusterView cluster_;

@@ -14,6 +14,43 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// Those of `rays` that what stands behind a leaf blocks.
+HWY_INLINE std::uint32_t visit_instance(const SceneView& scene, std::uint32_t leaf,
+                                        const WorldBundle& bundle, std::uint32_t rays, Turn& turn) {
+  LocalBundle local;
+  std::uint32_t index;
+  rays = enter_leaf(scene, leaf, bundle, rays, local, index);
+  if (rays == 0) return 0;
+  const MeshView& mesh = scene.meshes[scene.instances[index].mesh];
+  if (HWY_UNLIKELY(scene.instances[index].filtered)) {
+    return walk_filtered(scene, mesh, index, bundle, local, rays);
+  }
+  return walk_mesh(mesh, index, local, rays, turn);
+}
+
+/// The first `count` rays of `bundle`; a bit for each that is blocked.
+HWY_INLINE std::uint32_t occluded_together(const SceneView& scene, WorldBundle& bundle,
+                                           std::uint32_t count, Turn& turn) {
+  std::uint32_t rays = prepare(bundle, count);
+  if (rays == 0 || scene.tree.node_count == 0) return 0;
+  const auto visit = [&](std::uint32_t entry, std::uint32_t active)
+                         HWY_ATTR { return visit_instance(scene, entry, bundle, active, turn); };
+  // One instance alone needs no tree: entering it looks at its box anyway.
+  if (is_alone(scene)) return visit(0, rays);
+  const auto address = [&](std::uint32_t child) HWY_ATTR -> const void* {
+    return scene.tree.nodes + (child & Waiting::kLeaf ? 0 : child);
+  };
+  std::uint32_t found = 0;
+  while (rays != 0) {  // all at once: those of a bundle point to one octant
+    const std::uint32_t now = same_octant(bundle.slab, rays);
+    const WalkingRays walking(bundle.slab, now);
+    const Reach reach(walking, bundle.rays, now);
+    found |= walk_bundle(scene.tree, walking, reach, now, visit, address);
+    rays &= ~now;
+  }
+  return found;
+}
+
 inline constexpr std::uint32_t kSorted = 4096;  ///< rays sorted at a time
 
 /// Where kRayLanes rays come from: their numbers, and those of their points.
@@ -62,6 +99,18 @@ HWY_INLINE void load_shared(const Rays& from, const Places& at, WorldBundle& to,
 template <class Rays>
 HWY_INLINE void load_times(const Rays& from, const Places& at, WorldBundle& to, std::uint32_t k) {
   for (std::uint32_t i = 0; i < kRayLanes; ++i) to.time[k + i] = from.time[at.point[i]];
+}
+
+/// What a scene that moves, or that has a filter, asks for as well.
+template <class Rays>
+HWY_INLINE void load_more(const SceneView& scene, const Rays& from, const Places& at,
+                          WorldBundle& to, std::uint32_t k) {
+  const bool filters = scene.filter.exists();
+  if (scene.moves || filters) load_times(from, at, to, k);
+  if (!HWY_UNLIKELY(filters)) return;
+  for (std::uint32_t i = 0; i < kRayLanes; ++i) {
+    to.path_key[k + i] = from.path_key != nullptr ? from.path_key[at.ray[i]] : 0;
+  }
 }
 
 /// Into places k…k + kRayLanes − 1 of a bundle.
@@ -148,7 +197,7 @@ HWY_NOINLINE void occluded_listed(const SceneView& scene, const Rays& rays, std:
     hn::Store(hn::Add(place, hn::Set(di, static_cast<std::int32_t>(first))), di, at.ray);
     find_places(rays, at.ray);
     load_rays(rays, at, bundle, k);
-    if (scene.moves) load_times(rays, at, bundle, k);
+    load_more(scene, rays, at, bundle, k);
   }
   join_masks(rays, bundle, count);
   for (std::uint32_t found = occluded_together(scene, bundle, count, turn); found != 0;

@@ -5,13 +5,6 @@
 
 namespace komorebi {
 
-/// Leaf filters decide whether a hit counts (cut-outs by texture, later). This one says yes
-/// without being asked: `kEnabled` false compiles the question out.
-struct OpaqueFilter {
-  static constexpr bool kEnabled = false;
-  bool operator()(const Hit&) const { return true; }
-};
-
 /// What one ray has found so far, and the only place that decides between hits.
 struct Closest {
   Hit hit;
@@ -37,22 +30,39 @@ struct Closest {
   }
 };
 
+/// What of one instance stops a ray: everything that it meets, or what the scene's filter says.
+class HitTest {
+ public:
+  HitTest(const SceneView& scene, std::uint32_t instance, const Ray& ray)
+      : filter_(scene.instances[instance].filtered ? &scene.filter : nullptr), ray_(ray) {}
+
+  /// `meet(closest)` keeps a hit in the Closest that it is given, and says whether there is one.
+  /// Whether there is one that counts.
+  template <class Meet>
+  bool keep(const Meet& meet, Closest* closest) const {
+    if (filter_ == nullptr) return meet(closest);
+    Closest alone;
+    if (!meet(&alone) || !closest->is_better(alone.hit)) return false;
+    if (!(*filter_)({alone.hit, ray_})) return false;
+    return closest->keep(alone.hit);
+  }
+
+ private:
+  const HitFilter* filter_;
+  const Ray& ray_;
+};
+
 /// Tests one triangle and keeps the hit if it is the better one; true if anything was hit.
-template <class Filter>
 inline bool test_triangle(const LocalRay& local, const Ray& ray, std::uint32_t instance,
                           std::uint32_t primitive, const Vec3& a, const Vec3& b, const Vec3& c,
-                          const Filter& filter, Closest* closest) {
+                          Closest* closest) {
   if (instance == ray.self_instance && primitive == ray.self_primitive) return false;
   TriangleHit found;
   if (!intersect_triangle(local.shear, local.slab, local.range, local.t_min, local.t_max, a, b, c,
                           &found)) {
     return false;
   }
-  const Hit hit{found.t, found.u, found.v, instance, primitive};
-  if constexpr (Filter::kEnabled) {
-    if (closest->is_better(hit) && !filter(hit)) return false;
-  }
-  closest->keep(hit);
+  closest->keep({found.t, found.u, found.v, instance, primitive});
   return true;
 }
 

@@ -5,11 +5,11 @@
 namespace komorebi {
 
 Hit intersect_scalar(const SceneView& scene, const Ray& ray) {
-  return trace_scalar<false>(scene, ray, OpaqueFilter{});
+  return trace_scalar<false>(scene, ray);
 }
 
 bool occluded_scalar(const SceneView& scene, const Ray& ray) {
-  return trace_scalar<true>(scene, ray, OpaqueFilter{}).valid();
+  return trace_scalar<true>(scene, ray).valid();
 }
 
 }  // namespace komorebi

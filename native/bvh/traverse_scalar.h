@@ -53,12 +53,15 @@ bool walk(const TreeView& tree, const SlabRay& slab, Interval range, const float
 /// Whether a ray meets a set of curves or points; the better hit is kept.
 template <bool kAny>
 bool trace_round(const MeshView& mesh, std::uint32_t instance, const LocalRay& local,
-                 const Vec3& direction, const Ray& ray, Closest* closest) {
+                 const Vec3& direction, const Ray& ray, const HitTest& test, Closest* closest) {
   const TimeTree tree = round_tree_at(mesh, ray.time);
   const RoundRay round = make_round_ray(local, direction, round_time(mesh, ray.time));
   const std::uint32_t self = instance == ray.self_instance ? ray.self_primitive : kNone;
   const auto visit = [&](std::uint32_t leaf) {
-    const bool found = test_round_leaf(mesh, round, self, instance, tree.leaves[leaf], closest);
+    const auto meet = [&](Closest* to) {
+      return test_round_leaf(mesh, round, self, instance, tree.leaves[leaf], to);
+    };
+    const bool found = test.keep(meet, closest);
     return kAny && found;
   };
   return walk(tree.tree, local.slab, local.range, closest->limit, visit);
@@ -67,21 +70,23 @@ bool trace_round(const MeshView& mesh, std::uint32_t instance, const LocalRay& l
 /// The same of a mesh that deforms.
 template <bool kAny>
 bool trace_moving(const MeshView& mesh, std::uint32_t instance, const LocalRay& local,
-                  const Ray& ray, Closest* closest) {
+                  const Ray& ray, const HitTest& test, Closest* closest) {
   const TimeTree& tree = tree_at(mesh, ray.time);
   const SetPlace place = set_place(mesh.position_sets, ray.time);
   const std::uint32_t self = instance == ray.self_instance ? ray.self_primitive : kNone;
   const auto visit = [&](std::uint32_t leaf) {
-    const bool found =
-        test_moving_triangle(mesh, local, place, self, instance, tree.leaf2triangle[leaf], closest);
+    const auto meet = [&](Closest* to) {
+      return test_moving_triangle(mesh, local, place, self, instance, tree.leaf2triangle[leaf], to);
+    };
+    const bool found = test.keep(meet, closest);
     return kAny && found;
   };
   return walk(tree.tree, local.slab, local.range, closest->limit, visit);
 }
 
 /// Closest (or any) hit of one ray through both levels of trees.
-template <bool kAny, class Filter>
-Hit trace_scalar(const SceneView& scene, const Ray& ray, const Filter& filter) {
+template <bool kAny>
+Hit trace_scalar(const SceneView& scene, const Ray& ray) {
   Closest closest(ray);
   const SlabRay world = make_world_slab(ray);
   if (!is_usable(world)) return closest.hit;
@@ -99,18 +104,22 @@ Hit trace_scalar(const SceneView& scene, const Ray& ray, const Filter& filter) {
     const InstanceView& instance =
         scene.instances[index].motion == kNoMotion ? scene.instances[index] : moved;
     const MeshView& mesh = scene.meshes[instance.mesh];
+    const HitTest test(scene, index, ray);
     if (mesh.kind == PrimitiveKind::kMovingTriangle) {
-      return trace_moving<kAny>(mesh, index, local, ray, &closest);
+      return trace_moving<kAny>(mesh, index, local, ray, test, &closest);
     }
     if (mesh.kind != PrimitiveKind::kTriangle) {
-      return trace_round<kAny>(mesh, index, local, local_direction(instance, ray), ray, &closest);
+      return trace_round<kAny>(mesh, index, local, local_direction(instance, ray), ray, test,
+                               &closest);
     }
     const auto visit_cluster = [&](std::uint32_t leaf) {
       const ClusterView cluster(mesh.clusters + std::size_t{leaf} * kClusterUnit);
       for (std::uint32_t k = 0; k < cluster.triangle_count(); ++k) {
-        const bool found =
-            test_triangle(local, ray, index, cluster.primitive(k), cluster.position(k, 0),
-                          cluster.position(k, 1), cluster.position(k, 2), filter, &closest);
+        const auto meet = [&](Closest* to) {
+          return test_triangle(local, ray, index, cluster.primitive(k), cluster.position(k, 0),
+                               cluster.position(k, 1), cluster.position(k, 2), to);
+        };
+        const bool found = test.keep(meet, &closest);
         if (kAny && found) return true;
       }
       return false;

@@ -56,6 +56,7 @@ Settings chosen(Settings settings, const CliOptions& options) {
   if (options.samples) settings.samples = *options.samples;
   if (options.seed) settings.seed = *options.seed;
   if (options.light_samples) settings.light_samples = *options.light_samples;
+  if (options.bounces) settings.bounces = *options.bounces;
   if (options.adaptive_threshold) {
     settings.use_adaptive_sampling = true;
     settings.adaptive_threshold = *options.adaptive_threshold;

@@ -35,6 +35,7 @@ const char* usage() {
          "In place of the scene's own settings:\n"
          "  --samples N               camera samples a pixel\n"
          "  --light-samples N         light rays a camera sample (0: automatic)\n"
+         "  --bounces N               from surface to surface\n"
          "  --seed N\n"
          "  --adaptive-threshold X    stop where the noise is below X (0: automatic)\n"
          "  --adaptive-min-samples N  but not before N samples (0: automatic)\n"
@@ -60,6 +61,8 @@ std::optional<CliOptions> parse_options(int argc, char** argv) {
       options.seed = number("--seed", value());
     } else if (word == "--light-samples") {
       options.light_samples = number("--light-samples", value());
+    } else if (word == "--bounces") {
+      options.bounces = number("--bounces", value());
     } else if (word == "--adaptive-threshold") {
       options.adaptive_threshold = real_number("--adaptive-threshold", value());
     } else if (word == "--adaptive-min-samples") {

@@ -11,7 +11,7 @@ struct CliOptions {
   std::string output = "komorebi.exr";
   std::uint32_t threads = 0;
   // In place of the scene's own.
-  std::optional<std::uint32_t> samples, seed, light_samples, adaptive_min_samples;
+  std::optional<std::uint32_t> samples, seed, light_samples, bounces, adaptive_min_samples;
   std::optional<float> adaptive_threshold;  ///< turns adaptive sampling on
   bool no_adaptive_sampling = false;
   std::optional<float> time_limit;

@@ -27,6 +27,7 @@ struct Ray {
   std::uint32_t mask = kMaskAll;        ///< instances with no common bit are not seen
   std::uint32_t self_instance = kNone;  ///< the primitive that the ray leaves is never hit
   std::uint32_t self_primitive = kNone;
+  std::uint32_t path_key = 0;  ///< what a filter decides by (core/hit_filter.h, core/path_key.h)
 };
 
 /// Closest hit. `u` and `v` weight the second and third corner; the first has 1 − u − v.
@@ -47,6 +48,7 @@ struct RaySpan {
   const float *t_min, *t_max, *time;
   const std::uint32_t *mask, *self_instance, *self_primitive;
   std::uint32_t count = 0;
+  const std::uint32_t* path_key = nullptr;  ///< null: all 0; only a scene with a filter reads it
 
   Ray operator[](std::uint32_t i) const {
     Ray ray;
@@ -58,6 +60,7 @@ struct RaySpan {
     ray.mask = mask[i];
     ray.self_instance = self_instance[i];
     ray.self_primitive = self_primitive[i];
+    if (path_key != nullptr) ray.path_key = path_key[i];
     return ray;
   }
 };

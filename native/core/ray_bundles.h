@@ -17,6 +17,7 @@ struct RayBundles {
   const std::uint32_t* place = nullptr;
   // One entry a ray.
   const float *direction_x, *direction_y, *direction_z, *t_max;
+  const std::uint32_t* path_key;  ///< null: all 0; only a scene with a filter reads it
 
   std::uint32_t ray_count() const { return point_count == 0 ? 0 : first_ray[point_count]; }
 
@@ -31,6 +32,7 @@ struct RayBundles {
     ray.mask = mask;
     ray.self_instance = self_instance[p];
     ray.self_primitive = self_primitive[p];
+    if (path_key != nullptr) ray.path_key = path_key[at];
     return ray;
   }
 };

@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "core/aabb.h"
-#include "core/ray.h"
+#include "core/hit_filter.h"
 
 namespace komorebi {
 
@@ -33,12 +33,17 @@ struct LeafGrid {
   Vec3 step{0.0f};
 };
 
-/// A named array on a mesh (UV map, colour): the table is there before the first reader.
-enum class AttributeDomain : std::uint32_t { kVertex, kCorner, kFace };
+/// A named array on a mesh (UV map, colour, …), laid out so that a hit's primitive, u and v find
+/// their place (core/attribute.h).
+enum class AttributeDomain : std::uint32_t {
+  kVertex,  ///< rows as vertices, keys or points are
+  kCorner,  ///< three rows a triangle
+  kFace,    ///< a row a primitive: triangle, segment or point
+};
 struct AttributeView {
   const char* name;
   AttributeDomain domain;
-  std::uint32_t components;  ///< floats per element
+  std::uint32_t components;  ///< floats a row, 1 to 4
   const float* data;
 };
 
@@ -62,7 +67,6 @@ struct TimeTree {
 struct MeshView {
   PrimitiveKind kind = PrimitiveKind::kTriangle;
   Vec3d object_origin{0.0};     ///< of local space, in the object's own
-  std::uint32_t opaque = 1;     ///< 1: no leaf filter is ever needed
   std::uint32_t stretched = 0;  ///< 1: by its only instance, which stands still (world_normals)
   std::uint32_t triangle_count = 0;
   std::uint32_t vertex_count = 0;
@@ -133,7 +137,8 @@ struct InstanceView {
   /// Conservative for the traced ray; empty: the instance is never hit.
   Aabb world_bounds;
   Mat3 world_from_local{1.0f};
-  std::uint32_t material_slots = 0;  ///< which list of slots (render/scene_tables.h)
+  std::uint32_t material_slots : 31 = 0;  ///< which list of slots (render/scene_tables.h)
+  std::uint32_t filtered : 1 = 0;         ///< its hits count if SceneView::filter says so
 };
 static_assert(sizeof(InstanceView) == 124);
 
@@ -155,6 +160,7 @@ struct SceneView {
   const MotionGroup* motion_groups = nullptr;
   std::uint32_t motion_group_count = 0;
   bool moves = false;  ///< whether any hit depends on the ray's time
+  HitFilter filter;    ///< of instances that are `filtered`
 };
 
 }  // namespace komorebi

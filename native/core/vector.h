@@ -7,6 +7,7 @@ namespace komorebi {
 
 using Vec2 = glm::vec2;
 using Vec3 = glm::vec3;
+using Vec4 = glm::vec4;
 using Vec3d = glm::dvec3;
 using Mat3 = glm::mat3;  // column-major, as GLM stores it
 using Mat3d = glm::dmat3;

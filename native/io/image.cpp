@@ -1,62 +1,17 @@
 #include "io/image.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <stdexcept>
+
+#include "io/open_image.h"
 
 // The host may use the same library: nothing global is touched here. No image cache, no global
 // attribute, no thread pool, and error messages are always collected (the library would print what
 // is left at exit).
 namespace komorebi {
 namespace {
-
-constexpr int kMaxSide = 1 << 17;
-constexpr std::uint64_t kMaxValues = std::uint64_t{1} << 32;  // 16 GiB of floats
-
-[[noreturn]] void fail(const std::string& path, const std::string& why) {
-  throw std::runtime_error("image \"" + path + "\": " + why);
-}
-
-// The library's own words in brackets, cut to their first line.
-std::string in_brackets(const std::string& message) {
-  const std::string line = message.substr(0, message.find_first_of("\r\n"));
-  return line.empty() ? std::string() : " (" + line + ")";
-}
-
-std::unique_ptr<OIIO::ImageInput> open(const std::string& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) fail(path, "no such file");
-  if (std::filesystem::is_directory(status)) fail(path, "is a folder, not an image");
-  if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
-    std::fclose(file);
-  } else {
-    fail(path, "cannot be opened for reading");
-  }
-  auto input = OIIO::ImageInput::open(path);
-  if (!input) fail(path, "is not an image that can be read" + in_brackets(OIIO::geterror()));
-  input->threads(1);
-  return input;
-}
-
-void check_size(const std::string& path, const OIIO::ImageSpec& spec) {
-  const bool sane = spec.width > 0 && spec.height > 0 && spec.nchannels > 0 &&
-                    spec.width <= kMaxSide && spec.height <= kMaxSide && spec.depth <= 1 &&
-                    static_cast<std::uint64_t>(spec.width) *
-                            static_cast<std::uint64_t>(spec.height) *
-                            static_cast<std::uint64_t>(spec.nchannels) <=
-                        kMaxValues;
-  if (!sane) {
-    fail(path, "has an absurd size, " + std::to_string(spec.width) + " × " +
-                   std::to_string(spec.height) + " × " + std::to_string(spec.nchannels));
-  }
-  if (spec.deep) fail(path, "is a deep image, which is not supported");
-}
 
 void flip_rows(Image& image) {
   const std::size_t row = std::size_t{image.width} * image.channels.size();
@@ -80,9 +35,9 @@ double fifth_root(double x) {
 }  // namespace
 
 Image read_channels(const std::string& path) {
-  const auto input = open(path);
+  const auto input = open_image(path);
   const OIIO::ImageSpec spec = input->spec();
-  check_size(path, spec);
+  check_image_size(path, spec);
   Image image;
   image.width = static_cast<std::uint32_t>(spec.width);
   image.height = static_cast<std::uint32_t>(spec.height);
@@ -91,7 +46,8 @@ Image read_channels(const std::string& path) {
   image.pixels.resize(std::size_t{image.width} * image.height * image.channels.size());
   const bool read =
       input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data());
-  if (!read) fail(path, "cannot be read" + in_brackets(input->geterror()));
+  if (!read || input->has_error())
+    fail_image(path, "cannot be read" + in_brackets(input->geterror()));
   for (const OIIO::ParamValue& value : spec.extra_attribs) {
     if (value.type() == OIIO::TypeDesc::STRING) {
       image.metadata.emplace_back(value.name().string(), value.get_string());
@@ -131,7 +87,8 @@ void write_exr(const std::string& path, const Image& image) {
     throw std::invalid_argument("image \"" + path + "\": pixels and channels do not fit its size");
   }
   auto output = OIIO::ImageOutput::create("exr");
-  if (!output) fail(path, "OpenEXR files cannot be written here" + in_brackets(OIIO::geterror()));
+  if (!output)
+    fail_image(path, "OpenEXR files cannot be written here" + in_brackets(OIIO::geterror()));
   output->threads(1);
   OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height),
                        static_cast<int>(channels), OIIO::TypeDesc::FLOAT);
@@ -147,7 +104,7 @@ void write_exr(const std::string& path, const Image& image) {
   if (!written) {
     const std::string why = output->geterror();
     output.reset();
-    fail(path, "cannot be written" + in_brackets(why));
+    fail_image(path, "cannot be written" + in_brackets(why));
   }
 }
 

@@ -34,6 +34,10 @@ inline const char* type_name<std::uint32_t>() {
   return "uint32";
 }
 template <>
+inline const char* type_name<std::uint8_t>() {
+  return "uint8";
+}
+template <>
 inline const char* type_name<bool>() {
   return "bool";
 }

@@ -3,9 +3,11 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
+#include <string>
 
 #include "parallel/cancel.h"
 #include "parallel/thread_pool.h"
+#include "texture/sampling.h"
 
 namespace komorebi {
 class Mesh;
@@ -19,9 +21,17 @@ namespace py = pybind11;
 void bind_scene(py::module_& module);
 void bind_session(py::module_& module);
 void bind_shader(py::module_& module);
+void bind_sky(py::module_& module);
+void bind_texture(py::module_& module);
 
 /// Curves and points, which Mesh holds too.
 void bind_round(py::class_<Mesh, std::shared_ptr<Mesh>>& mesh);
+
+/// The named arrays of a mesh.
+void bind_attributes(py::class_<Mesh, std::shared_ptr<Mesh>>& mesh);
+/// Blender's names of a node's interpolation and extension; std::invalid_argument.
+Interpolation interpolation_from_name(const std::string& name);
+Extension extension_from_name(const std::string& name);
 
 /// A pool for a build: `threads` of Blender's scene, 0 for one a core. One pool is kept from call
 /// to call, because starting threads costs more than a small mesh's build.

@@ -1,4 +1,5 @@
 #include "python/arrays.h"
+#include "python/attribute_input.h"
 #include "python/bind.h"
 #include "render/mesh.h"
 
@@ -29,7 +30,8 @@ std::shared_ptr<Mesh> from_curves(const std::string& name, const py::object& pos
                                   const py::object& motion_positions,
                                   const py::object& motion_radii, const py::object& step_positions,
                                   const std::string& builder, unsigned threads,
-                                  const std::shared_ptr<Cancel>& cancel) {
+                                  const std::shared_ptr<Cancel>& cancel,
+                                  const py::object& attributes) {
   const std::string curves = "curves \"" + name + "\": ";
   CurvesInput input;
   input.name = name;
@@ -43,6 +45,7 @@ std::shared_ptr<Mesh> from_curves(const std::string& name, const py::object& pos
   input.curve2uv = optional_view<float>(curve_uvs, curves + "curve_uvs", {-1, 2});
   input.motion =
       motion_of(curves, input.key2xyz.size() / 3, motion_positions, motion_radii, step_positions);
+  input.attributes = attributes_of(attributes, curves);
   const Builder kind = builder_from_name(builder);
   const py::gil_scoped_release release;
   return std::const_pointer_cast<Mesh>(
@@ -53,7 +56,8 @@ std::shared_ptr<Mesh> from_points(const std::string& name, const py::object& pos
                                   const py::object& radii, const py::object& motion_positions,
                                   const py::object& motion_radii, const py::object& step_positions,
                                   const std::string& builder, unsigned threads,
-                                  const std::shared_ptr<Cancel>& cancel) {
+                                  const std::shared_ptr<Cancel>& cancel,
+                                  const py::object& attributes) {
   const std::string points = "points \"" + name + "\": ";
   PointsInput input;
   input.name = name;
@@ -61,6 +65,7 @@ std::shared_ptr<Mesh> from_points(const std::string& name, const py::object& pos
   input.point2radius = view<float>(radii, points + "radii", {-1});
   input.motion =
       motion_of(points, input.point2xyz.size() / 3, motion_positions, motion_radii, step_positions);
+  input.attributes = attributes_of(attributes, points);
   const Builder kind = builder_from_name(builder);
   const py::gil_scoped_release release;
   return std::const_pointer_cast<Mesh>(
@@ -82,22 +87,25 @@ motion_positions: float32 [2k, K, 3], positions at the other times of the shutte
 with `positions` in the middle are at even times from its opening to its closing. motion_radii:
 float32 [2k, K] likewise; None if radii do not change. step_positions: float32 [2, K, 3], positions a
 step of time before and after, which the Vector pass of a shutter that stays shut compares; the
-curves themselves stand still. Raises ValueError naming the curves and how many entries are wrong,
+curves themselves stand still. attributes: {name: (domain, float32 [rows, 1 to 4])}, domain POINT or
+CURVE with a row a key or curve; what is not finite counts as 0 (see warnings). Raises ValueError naming the curves and how many entries are wrong,
 Cancelled.)",
                   py::arg("name"), py::arg("positions"), py::arg("radii"), py::arg("curve_offsets"),
                   py::kw_only(), py::arg("shape") = "RIBBONS", py::arg("subdivisions") = 2,
                   py::arg("curve_materials") = py::none(), py::arg("curve_uvs") = py::none(),
                   py::arg("motion_positions") = py::none(), py::arg("motion_radii") = py::none(),
                   py::arg("step_positions") = py::none(), py::arg("builder") = "LINEAR",
-                  py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>());
+                  py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
+                  py::arg("attributes") = py::none());
   mesh.def_static("from_points", &from_points,
                   "Spheres. positions: float32 [N, 3], object space, metres; radii: float32 [N], "
-                  "not negative. motion_positions, motion_radii and step_positions are as those "
-                  "of from_curves, and so is what it raises.",
+                  "not negative. motion_positions, motion_radii, step_positions and attributes "
+                  "(of domain POINT) are as those of from_curves, and so is what it raises.",
                   py::arg("name"), py::arg("positions"), py::arg("radii"), py::kw_only(),
                   py::arg("motion_positions") = py::none(), py::arg("motion_radii") = py::none(),
                   py::arg("step_positions") = py::none(), py::arg("builder") = "LINEAR",
-                  py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>());
+                  py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
+                  py::arg("attributes") = py::none());
 }
 
 }  // namespace komorebi::python

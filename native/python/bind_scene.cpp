@@ -7,6 +7,7 @@
 #include "bvh/choose_builder.h"
 #include "io/image.h"
 #include "python/arrays.h"
+#include "python/attribute_input.h"
 #include "python/bind.h"
 #include "python/camera_input.h"
 #include "render/content_hash.h"
@@ -25,8 +26,8 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
                                 unsigned threads, const std::shared_ptr<Cancel>& cancel,
                                 const std::shared_ptr<Mesh>& same_geometry,
                                 const py::object& motion_positions,
-                                const py::object& motion_normals,
-                                const py::object& step_positions) {
+                                const py::object& motion_normals, const py::object& step_positions,
+                                const py::object& attributes) {
   const std::string mesh = "mesh \"" + name + "\": ";
   MeshInput input;
   input.name = name;
@@ -50,6 +51,7 @@ std::shared_ptr<Mesh> make_mesh(const std::string& name, const py::object& posit
       optional_view<float>(motion_normals, mesh + "motion_normals", {-1, normals, 3});
   input.step_positions =
       optional_view<float>(step_positions, mesh + "step_positions", {2, vertices, 3});
+  input.attributes = attributes_of(attributes, mesh);
   const Builder kind = builder_from_name(builder);
   const py::gil_scoped_release release;
   // Python has no const; nothing that is bound below changes a mesh.
@@ -236,6 +238,7 @@ void bind_mesh(py::module_& module) {
       "A triangle mesh, curves or points with their tree; immutable, shared by as many scenes as "
       "hold it.");
   bind_round(mesh);
+  bind_attributes(mesh);
   mesh.def(py::init(&make_mesh),
            R"(Copies a polygon mesh into the tracer's layout and builds its tree; releases the GIL.
 
@@ -250,7 +253,9 @@ tree is shared then. motion_positions: float32 [2k, V, 3], positions at the othe
 shutter in their order; all with `positions` in the middle are at even times from its opening to its
 closing. motion_normals: float32 [2k, C or V, 3] likewise; None if normals do not change.
 step_positions: float32 [2, V, 3], positions a step of time before and after, which the Vector pass
-of a shutter that stays shut compares; the mesh itself stands still.
+of a shutter that stays shut compares; the mesh itself stands still. attributes: {name: (domain,
+float32 [rows, 1 to 4])}, domain POINT, CORNER or FACE with a row a vertex, corner or face; what is
+not finite counts as 0 (see warnings).
 Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
            py::arg("name"), py::arg("positions"), py::arg("corner_verts"), py::arg("face_offsets"),
            py::kw_only(), py::arg("tri2corner") = py::none(), py::arg("tri2face") = py::none(),
@@ -260,7 +265,7 @@ Raises ValueError naming the mesh and how many entries are wrong, Cancelled.)",
            py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
            py::arg("same_geometry") = std::shared_ptr<Mesh>(),
            py::arg("motion_positions") = py::none(), py::arg("motion_normals") = py::none(),
-           py::arg("step_positions") = py::none())
+           py::arg("step_positions") = py::none(), py::arg("attributes") = py::none())
       .def(
           "rebuilt",
           [](const Mesh& old, const std::string& builder, unsigned threads,

@@ -7,6 +7,7 @@
 #include "render/material.h"
 #include "shader/op_table.h"
 #include "shader/program.h"
+#include "texture/texture.h"
 
 namespace komorebi::python {
 namespace {
@@ -37,6 +38,8 @@ std::shared_ptr<Program> make_program(const std::string& name, const py::list& o
     const auto values = optional_view<float>(table, name + ": table of \"" + op.op + "\"", {-1});
     op.table.assign(values.begin(), values.end());
     op.name = item.attr("name").cast<std::string>();
+    const py::object texture = item.attr("texture");
+    if (!texture.is_none()) op.texture = texture.cast<std::shared_ptr<Texture>>();
     inputs.push_back(std::move(op));
   }
   std::vector<Operand> wanted;

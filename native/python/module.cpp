@@ -72,7 +72,9 @@ PYBIND11_MODULE(_komorebi, module) {
       .def(py::init<>())
       .def("request", &Cancel::raise, "Asks every call that was given this flag to end.")
       .def_property_readonly("requested", &Cancel::raised);
+  bind_texture(module);
   bind_shader(module);
+  bind_sky(module);
   bind_scene(module);
   bind_session(module);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bvh/traverse.h"
+#include "core/path_key.h"
 #include "render/camera_kernel.h"
 #include "render/one_ray.h"
 #include "render/pass_row.h"
@@ -31,10 +32,13 @@ BatchIntegrator::BatchIntegrator(const RenderContext& context)
 }
 
 std::uint64_t BatchIntegrator::ray_count() const {
-  std::uint64_t count = camera_ray_count_ + light_caster_.ray_count() +
-                        bounces_.ray_count() + bounces_alone_.ray_count();
+  std::uint64_t count = camera_ray_count_ + light_caster_.ray_count() + bounce_ray_count();
   for (const Ambient& ambient : ambient_) count += ambient.caster.ray_count();
   return count;
+}
+
+std::uint64_t BatchIntegrator::bounce_ray_count() const {
+  return bounces_.ray_count() + bounces_alone_.ray_count();
 }
 
 RayTally BatchIntegrator::ambient_tally() const {
@@ -86,6 +90,10 @@ void BatchIntegrator::start_camera_rays(std::uint32_t count) {
   std::fill_n(camera_rays_.words(0), count, kMaskCamera);
   std::fill_n(camera_rays_.words(1), count, kNone);
   std::fill_n(camera_rays_.words(2), count, kNone);
+  if (!context_.scene.filter.exists()) return;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    camera_rays_.words(3)[i] = path_key(block.pixel_seed[i], kDimensionPixel, block.sample[i]);
+  }
 }
 
 void BatchIntegrator::shade() {
@@ -108,11 +116,18 @@ void BatchIntegrator::shade() {
     }
   }
   surfaces_.fill(context_, hits_.data(), rays);
-  if (context_.has_materials || context_.bounces > 0) shade_surfaces(context_, 0, surfaces_);
+  if (context_.has_materials || context_.bounces > 0) {
+    shader_.shade(context_, 0, hits_.data(), rays, context_.light_samples, surfaces_);
+    for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
+      results_[surfaces_.path(s)].alpha = 1.0f - surfaces_.shading(s).holdout;
+    }
+  }
   if (layout.size() == 0) return;
   for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
     const std::uint32_t path = surfaces_.path(s);
-    put_surface(context_, hits_[path], rays[path], surfaces_.normal(s), surfaces_.depth(s),
+    const Shading shading =
+        context_.has_materials ? surfaces_.shading(s) : clay_shading(context_, 0);
+    put_surface(context_, hits_[path], rays[path], surfaces_.normal(s), surfaces_.depth(s), shading,
                 paths_[path].sample, row(path));
   }
 }
@@ -166,13 +181,11 @@ bool BatchIntegrator::bounce(const Cancel& cancel) {
       bounces_alone_.begin(surfaces_, s, path, seed, sample);
     }
   }
-  return bounces_.trace(cancel,
-                        [&](std::uint32_t path, const Vec3& light) {
-                          results_[path].radiance += light;
-                        }) &&
-         bounces_alone_.trace(cancel, [&](std::uint32_t path, const Vec3& light) {
-           context_.passes.add(row(path), Quantity::kCatcherLight, light);
-         });
+  return bounces_.trace(cancel, [&](std::uint32_t path, const Vec3& light) {
+    results_[path].radiance += light;
+  }) && bounces_alone_.trace(cancel, [&](std::uint32_t path, const Vec3& light) {
+    context_.passes.add(row(path), Quantity::kCatcherLight, light);
+  });
 }
 
 void BatchIntegrator::light_block(std::uint32_t begin, std::uint32_t end) {

@@ -11,6 +11,7 @@
 #include "render/film.h"
 #include "render/light_caster.h"
 #include "render/ray_batch.h"
+#include "render/shade.h"
 #include "render/surface_batch.h"
 
 namespace komorebi {
@@ -36,6 +37,7 @@ class BatchIntegrator {
               const Cancel& cancel);
 
   std::uint64_t ray_count() const;
+  std::uint64_t bounce_ray_count() const;
   /// Of the rays that look for ambient occlusion, as picture or as pass.
   RayTally ambient_tally() const;
 
@@ -75,6 +77,7 @@ class BatchIntegrator {
   RayBatch camera_rays_;
   std::vector<Hit> hits_;
   SurfaceBatch surfaces_;
+  BatchShader shader_;
   std::vector<PixelSample> results_;
   std::vector<float> rows_;  // [paths][context_.passes.size()]
   AmbientPasses of_light_;   // passes that light rays fill

@@ -1,7 +1,6 @@
 #include "render/bounce_tracer.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "render/shade.h"
 
@@ -30,12 +29,23 @@ void BounceTracer::leave(std::uint32_t vertex, const SurfaceBatch& surfaces, std
   point.time = surfaces.time(surface);
   point.instance = surfaces.instance(surface);
   point.primitive = surfaces.primitive(surface);
-  Sampler sampler(0, 0, 0);
-  sampler.pixel_seed = state.pixel_seed;
+  const Sampler sampler(state.pixel_seed);
   Ray ray;
   if (!scatter(context_, vertex, point, sampler, state.sample, state.throughput, ray)) return;
   next_rays_.push(ray);
   next_states_.push_back(state);
+}
+
+/// The rays that left the last surfaces are those to be traced now.
+void BounceTracer::take_next() {
+  const RaySpan next = next_rays_.span();
+  rays_.clear();
+  states_.clear();
+  for (const std::uint32_t i : order_.sort(next)) {
+    rays_.push(next[i]);
+    states_.push_back(next_states_[i]);
+  }
+  clear();
 }
 
 bool BounceTracer::find_surfaces(std::uint32_t vertex, const Cancel& cancel) {
@@ -50,7 +60,7 @@ bool BounceTracer::find_surfaces(std::uint32_t vertex, const Cancel& cancel) {
     surfaces_.push(i, hits_[i], rays.time[i], state.pixel_seed, state.sample * kLaterLightSamples);
   }
   surfaces_.fill(context_, hits_.data(), rays);
-  shade_surfaces(context_, vertex, surfaces_);
+  shader_.shade(context_, vertex, hits_.data(), rays, kLaterLightSamples, surfaces_);
   light_.assign(surfaces_.size(), Vec3(0.0f));
   caster_.set_light_dimension(vertex_dimension(vertex, kVertexLightDirection));
   const std::uint32_t size = caster_.block_size();
@@ -67,9 +77,7 @@ bool BounceTracer::find_surfaces(std::uint32_t vertex, const Cancel& cancel) {
 bool BounceTracer::trace(const Cancel& cancel,
                          FunctionRef<void(std::uint32_t path, const Vec3& light)> visit) {
   for (std::uint32_t vertex = 1; !next_states_.empty(); ++vertex) {
-    std::swap(rays_, next_rays_);
-    std::swap(states_, next_states_);
-    clear();
+    take_next();
     if (!find_surfaces(vertex, cancel)) return false;
     for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
       State state = states_[surfaces_.path(s)];

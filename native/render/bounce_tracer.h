@@ -6,7 +6,9 @@
 #include "parallel/function_ref.h"
 #include "render/light_caster.h"
 #include "render/ray_batch.h"
+#include "render/ray_order.h"
 #include "render/scatter.h"
+#include "render/shade.h"
 
 namespace komorebi {
 
@@ -36,14 +38,17 @@ class BounceTracer {
 
   void leave(std::uint32_t vertex, const SurfaceBatch& surfaces, std::uint32_t surface,
              State state);
+  void take_next();
   bool find_surfaces(std::uint32_t vertex, const Cancel& cancel);
 
   RenderContext context_;
   LightCaster caster_;
   RayBatch rays_, next_rays_;
   std::vector<State> states_, next_states_;  // of each ray
+  RayOrder order_;
   std::vector<Hit> hits_;
   SurfaceBatch surfaces_;
+  BatchShader shader_;
   std::vector<Vec3> light_;  // mean of the light rays of each surface
   std::uint64_t ray_count_ = 0;
 };

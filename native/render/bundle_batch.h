@@ -28,13 +28,14 @@ class BundleBatch {
     first_ray_[point_count_++] = ray_count_;
   }
 
-  void push_ray(const Vec3& direction, float t_max) {
+  void push_ray(const Vec3& direction, float t_max, std::uint32_t path_key = 0) {
     if (ray_count_ == rays_[0].size()) {
+      path_keys_.resize(grown(ray_count_));
       for (auto& column : rays_) column.resize(grown(ray_count_));
     }
     const float f[4] = {direction.x, direction.y, direction.z, t_max};
     for (std::size_t c = 0; c < 4; ++c) rays_[c][ray_count_] = f[c];
-    ++ray_count_;
+    path_keys_[ray_count_++] = path_key;
   }
 
   std::uint32_t first_ray(std::uint32_t point) const { return first_ray_[point]; }
@@ -56,6 +57,7 @@ class BundleBatch {
     b.direction_y = rays_[1].data();
     b.direction_z = rays_[2].data();
     b.t_max = rays_[3].data();
+    b.path_key = path_keys_.data();
     return b;
   }
 
@@ -63,7 +65,7 @@ class BundleBatch {
   static std::size_t grown(std::size_t count) { return count < 64 ? 64 : 2 * count; }
 
   std::vector<float> origins_[4], rays_[4];  // xyz and time; xyz and t_max
-  std::vector<std::uint32_t> self_[2], first_ray_;
+  std::vector<std::uint32_t> self_[2], first_ray_, path_keys_;
   std::uint32_t point_count_ = 0, ray_count_ = 0;
 };
 

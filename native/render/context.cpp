@@ -34,6 +34,29 @@ float clamp_limit(float setting) {
   return setting > 0.0f ? 3.0f * setting : Ray{}.t_max;
 }
 
+/// Surfaces that are all of one matt colour need no materials: that colour takes the place of clay.
+/// Nor does ambient occlusion, to which all matt surfaces are alike.
+void take_materials(const SceneTables& tables, bool ao, RenderContext& context) {
+  if (tables.surfaces.empty()) return;
+  bool all_plain = true, alike = true;
+  Vec3 first(0.0f), albedo(0.0f);
+  bool any = false;
+  for (const std::uint32_t index : tables.slots) {
+    if (!is_plain(tables.surface(index), &albedo)) {
+      all_plain = false;
+      break;
+    }
+    alike = alike && (!any || albedo == first);
+    if (!any) first = albedo;
+    any = true;
+  }
+  if (all_plain && alike && any) {
+    context.clay_albedo = first;
+  } else {
+    context.has_materials = !all_plain || !ao || context.bounces > 0;
+  }
+}
+
 }  // namespace
 
 RenderContext make_context(const Scene& scene, const Settings& settings, const FilterView& filter) {
@@ -48,8 +71,9 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.method = settings.method;
   context.ao_sampling = settings.ao_sampling;
   context.clay_albedo = settings.clay_color;
-  context.albedo = lit_albedo(context, 0);
   context.bounces = settings.bounces;
+  take_materials(scene.tables(), ao, context);
+  context.albedo = lit_albedo(context, 0);
   context.clamp_direct = clamp_limit(settings.sample_clamp_direct);
   context.clamp_indirect = clamp_limit(settings.sample_clamp_indirect);
   context.ao_distance = settings.ao_distance > 0.0f ? settings.ao_distance : Ray{}.t_max;

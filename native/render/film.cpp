@@ -27,6 +27,7 @@ double power_of_two_scale(double bound, int bits) {
 double bound_of(Quantity q, std::uint32_t channel, double radiance, double value) {
   switch (q) {
     case Quantity::kEnvironment:
+    case Quantity::kEmission:
     case Quantity::kCatcherLight:
       return radiance;
     case Quantity::kMatte:

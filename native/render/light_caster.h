@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "bvh/traverse.h"
+#include "core/path_key.h"
 #include "render/light.h"
 #include "render/light_block.h"
 #include "render/light_points.h"
@@ -35,6 +36,7 @@ class LightCaster {
             const Visit& visit) {
     block_.draw(context_, surfaces.light_block(context_, begin, end));
     terminate_rays(surfaces, begin, end);
+    if (context_.scene.filter.exists()) find_path_keys(surfaces, begin, end);
     const std::uint64_t before = rays_;
     tally_.blocked += trace(surfaces, begin, end, context_.light_mask, kDrawn, kBlocked);
     tally_.cast += rays_ - before;
@@ -134,6 +136,17 @@ class LightCaster {
     if (context_.cuts_cosines) cut_cosines(surfaces, begin, end);
   }
 
+  void find_path_keys(const SurfaceBatch& surfaces, std::uint32_t begin, std::uint32_t end) {
+    path_keys_.resize(block_.size());
+    const std::uint32_t dimension = context_.light_dimension;
+    for (std::uint32_t s = begin; s < end; ++s) {
+      for (std::uint32_t j = 0; j < context_.light_samples; ++j) {
+        path_keys_[block_.place(s - begin, j)] =
+            path_key(surfaces.pixel_seed(s), dimension, surfaces.first_index(s) + j);
+      }
+    }
+  }
+
   void cut_cosines(const SurfaceBatch& surfaces, std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t p = 0; p < end - begin; ++p) {
       const float frequency = surfaces.frequency(begin + p);
@@ -175,6 +188,7 @@ class LightCaster {
     points_.lend(bundles);
     block_.lend(bundles, context_.light_distance);
     bundles.mask = mask;
+    bundles.path_key = path_keys_.data();
     const std::uint32_t rays = bundles.ray_count();
     bits_.resize((rays + 31) / 32);
     occluded(context_.scene, bundles, bits_.data());
@@ -190,8 +204,9 @@ class LightCaster {
 
   RenderContext context_;
   LightBlockBuffer block_;
-  std::vector<std::uint8_t> state_;  // State bits of each place
-  std::vector<float> share_;         // of the lift, of each place
+  std::vector<std::uint8_t> state_;       // State bits of each place
+  std::vector<float> share_;              // of the lift, of each place
+  std::vector<std::uint32_t> path_keys_;  // of each place, where the scene has a filter
   LightPoints points_;
   std::vector<std::uint32_t> bits_;  // of the rays traced
   std::uint64_t rays_ = 0;

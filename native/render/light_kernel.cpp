@@ -21,8 +21,7 @@ void sample_lights_scalar(const RenderContext& context, const LightBlock& block)
     SurfacePoint point;
     point.normal = entry(block.normal, p);
     point.geometric_normal = entry(block.geometric_normal, p);
-    Sampler sampler(0, 0, 0);
-    sampler.pixel_seed = block.pixel_seed[p];
+    const Sampler sampler(block.pixel_seed[p]);
     for (std::uint32_t j = 0; j < block.rays_per_point; ++j) {
       const LightSample drawn = sample_light(context, point, sampler, block.first_index[p] + j);
       const std::size_t to = std::size_t{j} * block.stride + p;

@@ -1,5 +1,6 @@
 #include "render/light_samples.h"
 
+#include <atomic>
 #include <vector>
 
 #include "render/batch.h"
@@ -20,10 +21,20 @@ constexpr std::uint32_t kRowsPerChunk = 4;  ///< enough rays for the tracer to s
 /// where eight are better by 1.2 to 1.4 times (docs/performance.md).
 constexpr double kWorthwhile = 1.55;
 
-/// The mean over pixels of the variance of a camera sample's radiance with so many light rays,
-/// from two samples a pixel; 0 when cancelled.
-double sample_variance(const RenderContext& context, const PixelGrid& grid, ThreadPool& pool,
-                       const Cancel& cancel) {
+/// What a camera sample costs in units of a light ray: by the ratio above, without light rays, and
+/// each ray of its bounces (of sponza's, which are looked at as closest hits and by light rays).
+constexpr double kCostWithoutLight = 3.27, kCostOfBounceRay = 3.0;
+
+/// What was found of camera samples with so many light rays.
+struct Trial {
+  double variance = 0.0;     // of a sample's radiance, mean over pixels; 0 when cancelled
+  double bounce_rays = 0.0;  // a sample
+};
+
+/// Of two samples a pixel.
+Trial try_samples(const RenderContext& context, const PixelGrid& grid, ThreadPool& pool,
+                  const Cancel& cancel) {
+  std::atomic<std::uint64_t> bounce_rays{0};
   std::vector<double> row_sums(grid.rows(), 0.0);  // added up in order, whoever made them
   pool.for_each_chunk(grid.rows(), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
     BatchIntegrator integrator(context);
@@ -35,6 +46,7 @@ double sample_variance(const RenderContext& context, const PixelGrid& grid, Thre
     }
     std::vector<Vec3> radiance(2 * pixels.size());
     if (!integrator.sample(pixels, 2, radiance.data(), cancel)) return;
+    bounce_rays += integrator.bounce_ray_count();
     for (std::size_t p = 0; p < pixels.size(); ++p) {
       const Vec3 difference = radiance[2 * p] - radiance[2 * p + 1];
       row_sums[begin + p / grid.columns()] += 0.5 * double(glm::dot(difference, difference));
@@ -42,7 +54,16 @@ double sample_variance(const RenderContext& context, const PixelGrid& grid, Thre
   });
   double sum = 0.0;
   for (const double row : row_sums) sum += row;
-  return cancel.raised() ? 0.0 : sum / static_cast<double>(grid.size());
+  const auto points = static_cast<double>(grid.size());
+  if (cancel.raised()) return {};
+  return {sum / points, static_cast<double>(bounce_rays) / (2.0 * points)};
+}
+
+/// How much more time samples may take that cast `many` light rays in place of half as many.
+double worthwhile(std::uint32_t many, const Trial& trial) {
+  if (trial.bounce_rays == 0.0) return kWorthwhile;
+  const double rest = kCostWithoutLight + kCostOfBounceRay * trial.bounce_rays;
+  return (rest + many) / (rest + 0.5 * many);
 }
 
 }  // namespace
@@ -56,10 +77,15 @@ std::uint32_t choose_light_samples(const RenderContext& given, ThreadPool& pool,
   const PixelGrid grid(context.camera, std::min(kPoints, pixels / kPixelsPerPoint));
   if (grid.size() < kFewestPoints) return kAutomaticLightSamples;
   context.light_samples = kAutomaticLightSamples;
-  const double many = sample_variance(context, grid, pool, cancel);
-  context.light_samples = kAutomaticLightSamples / 2;
-  const double few = sample_variance(context, grid, pool, cancel);
-  return few < kWorthwhile * many ? kAutomaticLightSamples / 2 : kAutomaticLightSamples;
+  Trial many = try_samples(context, grid, pool, cancel);
+  const std::uint32_t fewest = context.bounces > 0 ? 1 : kAutomaticLightSamples / 2;
+  for (std::uint32_t n = kAutomaticLightSamples; n > fewest; n /= 2) {
+    context.light_samples = n / 2;
+    const Trial few = try_samples(context, grid, pool, cancel);
+    if (!(few.variance < worthwhile(n, many) * many.variance)) return n;
+    many = few;
+  }
+  return fewest;
 }
 
 }  // namespace komorebi

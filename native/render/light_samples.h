@@ -18,7 +18,10 @@ namespace komorebi {
 /// same for every seed, border and part of a picture. Where the context's seed and light_samples
 /// lie does not matter.
 ///
-/// @returns kAutomaticLightSamples or half of it; the former for frames too small to tell, and
+/// With bounces most of a sample's time and noise lie elsewhere, and down to one ray is tried.
+///
+/// @returns kAutomaticLightSamples or half of it, with bounces also less; the former for frames too
+/// small to tell, and
 ///          when cancelled
 std::uint32_t choose_light_samples(const RenderContext& context, ThreadPool& pool,
                                    const Cancel& cancel);

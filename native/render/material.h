@@ -44,6 +44,13 @@ struct Material {
   }
 };
 
+/// Whether a material is one matt colour all over, seen by all rays alike, and which.
+bool is_plain(const Material& material, Vec3* albedo);
+
+/// How bright a surface's emission may be, as far as can be told without running it: the value
+/// itself where it is the same all over, else the largest number that stands in the program.
+float bound_of_emission(const Program& surface);
+
 /// The share of rays that a transparency lets through. Colours are not told apart: a ray is blocked
 /// or it is not.
 inline float clear_share(const Vec3& transparency) {
@@ -51,14 +58,18 @@ inline float clear_share(const Vec3& transparency) {
   return share > 0.0f ? (share < 1.0f ? share : 1.0f) : 0.0f;
 }
 
-/// What a surface is for one path that has met it and was not let through.
-struct SurfaceShading {
-  Vec3 albedo{0.0f};    ///< of the lobe that was chosen, over the probability of choosing it
-  Vec3 emission{0.0f};  ///< radiance
-  Vec3 color{0.0f};     ///< of all that reflects: the pass Diffuse Color
-  Vec3 normal{0.0f};    ///< of the lobe, unit, on the ray's side
-  bool transmits = false;
+/// What a surface does with the light of one path that has met it and was not let through.
+struct Shading {
+  Vec3 albedo{1.0f};     ///< of the lobe that was chosen, over the probability of choosing it
+  Vec3 emission{0.0f};   ///< radiance
+  Vec3 color{1.0f};      ///< of all that reflects: the pass Diffuse Color
   float holdout = 0.0f;  ///< how much of it is a hole
+};
+
+/// The lobe that was chosen.
+struct ChosenLobe {
+  Vec3 normal{0.0f};       ///< unit, on the ray's side
+  bool transmits = false;  ///< light comes from the other side
 };
 
 }  // namespace komorebi

@@ -1,7 +1,6 @@
 #include "render/material_points.h"
 
-#include <cstring>
-
+#include "core/attribute.h"
 #include "core/warp.h"
 #include "render/camera_axes.h"
 
@@ -40,64 +39,79 @@ float backfacing(const Placed& placed, const ShadeTask& task) {
   return glm::dot(world, task.direction) > 0.0f ? 1.0f : 0.0f;
 }
 
-void attribute_at(const MeshView&, const AttributeView&, std::uint32_t, float, float, float*) {}
-
-const AttributeView* find_attribute(const MeshView& mesh, const char* name) {
-  for (std::uint32_t i = 0; i < mesh.attribute_count; ++i) {
-    if (std::strcmp(mesh.attributes[i].name, name) == 0) return &mesh.attributes[i];
-  }
-  return nullptr;
-}
-
-/// How far the barycentrics u and v move when the point moves by `step` in its triangle.
-Vec2 barycentric_step(const Placed& placed, const ShadeTask& task, const Vec3& step) {
-  if (is_round(placed.mesh->kind)) return Vec2(0.0f);
-  const Corners at = detail::triangle_corners(*placed.mesh, task.hit.primitive, task.time);
-  const Vec3 b = at.corner[1] - at.corner[0], c = at.corner[2] - at.corner[0];
-  const Vec3 local = placed.instance->local_from_world * step;
-  const float bb = glm::dot(b, b), bc = glm::dot(b, c), cc = glm::dot(c, c);
-  const float area = bb * cc - bc * bc;
-  if (!(area > 0.0f)) return Vec2(0.0f);
-  const float along_b = glm::dot(local, b), along_c = glm::dot(local, c);
-  return Vec2(cc * along_b - bc * along_c, bb * along_c - bc * along_b) / area;
-}
-
 /// Along the surface, around the vertical axis through the middle of the object (Cycles' Tangent).
 Vec3 tangent(const Placed& placed, const ShadeTask& task) {
-  float generated[4] = {0.5f, 0.5f, 0.5f, 1.0f};
+  Vec4 generated(0.5f);
   if (const AttributeView* found = find_attribute(*placed.mesh, "generated")) {
-    attribute_at(*placed.mesh, *found, task.hit.primitive, task.hit.u, task.hit.v, generated);
+    generated = attribute_at(*placed.mesh, *found, task.hit.primitive, task.hit.u, task.hit.v);
   }
-  const Vec3 around(-(generated[1] - 0.5f), generated[0] - 0.5f, 0.0f);
+  const Vec3 around(-(generated.y - 0.5f), generated.x - 0.5f, 0.0f);
   const Vec3 world = placed.instance->world_from_local * around;
   const Vec3 side = glm::cross(detail::unit_or(world, Vec3(0.0f)), task.point.normal);
   return glm::cross(task.point.normal, detail::unit_or(side, Vec3(0.0f)));
 }
 
+/// How the barycentrics of a hit change when its point moves so far in the triangle's plane.
+Vec2 barycentric_step(const Placed& placed, const ShadeTask& task, const Vec3& world) {
+  if (is_round(placed.mesh->kind)) return Vec2(0.0f);
+  const Corners at = detail::triangle_corners(*placed.mesh, task.hit.primitive, task.time);
+  const Vec3d ab(at.corner[1] - at.corner[0]), ac(at.corner[2] - at.corner[0]);
+  const Vec3d step(placed.instance->local_from_world * world);
+  const double bb = glm::dot(ab, ab), bc = glm::dot(ab, ac), cc = glm::dot(ac, ac);
+  const double determinant = bb * cc - bc * bc;
+  if (!(determinant > 0.0)) return Vec2(0.0f);
+  const double b = glm::dot(step, ab), c = glm::dot(step, ac);
+  return Vec2(static_cast<float>((b * cc - c * bc) / determinant),
+              static_cast<float>((c * bb - b * bc) / determinant));
+}
+
+/// The way back from the world to the film of a camera without a panorama's projection: where a
+/// point is seen, in pixels from the bottom left of the frame.
+class FilmPlace {
+ public:
+  explicit FilmPlace(const CameraView& camera)
+      : camera_(camera),
+        into_film_(glm::inverse(Mat3d(camera.per_x, camera.per_y, camera.direction))) {}
+
+  Vec2 of(const Vec3& world) const {
+    const Vec3d at = into_film_ * (Vec3d(world) - camera_.origin);
+    const double w = camera_.kind == CameraKind::kOrthographic ? 1.0 : at.z;
+    if (camera_.kind == CameraKind::kPanorama || !(std::abs(w) > 0.0)) return Vec2(0.0f);
+    return Vec2(static_cast<float>(at.x / w + camera_.film_center_x),
+                static_cast<float>(at.y / w + camera_.film_center_y));
+  }
+
+ private:
+  const CameraView& camera_;
+  Mat3d into_film_;
+};
+
 /// How far the point moves in its surface when the ray's pixel moves by one to the right or up: of
 /// a camera ray by the neighbouring pixel's ray; after a bounce in some direction of the surface,
 /// as wide as a pixel would be so far away.
-void differentials(const RenderContext& context, const ShadeTask& task, Vec3& dx, Vec3& dy) {
+void differentials(const RenderContext& context, const FilmPlace& film, const ShadeTask& task,
+                   Vec3& dx, Vec3& dy) {
   const Vec3 normal = task.point.geometric_normal;
-  if (task.vertex > 0) {
-    const double width = std::sqrt(glm::dot(context.camera.per_x, context.camera.per_x));
+  if (task.vertex > 0 || context.camera.kind == CameraKind::kPanorama) {
+    const double width = context.camera.kind == CameraKind::kPanorama
+                             ? 2.0 * kPi / static_cast<double>(context.frame_width)
+                             : std::sqrt(glm::dot(context.camera.per_x, context.camera.per_x));
     const Frame frame = make_frame(normal);
     const float radius = task.hit.t * static_cast<float>(width);
     dx = radius * frame.tangent;
     dy = radius * frame.bitangent;
     return;
   }
-  const Vec2 middle(static_cast<float>(task.x) + 0.5f, static_cast<float>(task.y) + 0.5f);
-  const auto meets = [&](const Vec2& film) {
-    const Ray ray = camera_ray(context.camera, film, Vec2(0.5f), task.time);
+  const Vec2 middle = film.of(task.point.position);
+  const auto meets = [&](const Vec2& at) {
+    const Ray ray = camera_ray(context.camera, at, Vec2(0.5f), task.time);
     const float down = glm::dot(ray.direction, normal);
     if (!(down < -1e-4f)) return task.point.position;
     const float t = glm::dot(task.point.position - ray.origin, normal) / down;
     return ray.origin + t * ray.direction;
   };
-  const Vec3 here = meets(middle);
-  dx = meets(middle + Vec2(1.0f, 0.0f)) - here;
-  dy = meets(middle + Vec2(0.0f, 1.0f)) - here;
+  dx = meets(middle + Vec2(1.0f, 0.0f)) - task.point.position;
+  dy = meets(middle + Vec2(0.0f, 1.0f)) - task.point.position;
 }
 
 }  // namespace
@@ -134,20 +148,16 @@ const ShadePoints& MaterialPoints::fill(const RenderContext& context, const Prog
   put(PointInput::kCamera, [&](const ShadeTask& t) {
     return Vec3((Vec3d(t.point.position) - context.camera.origin) * camera_axes(context.camera));
   });
+  const FilmPlace film(context.camera);
   put(PointInput::kWindow, [&](const ShadeTask& t) {
-    return Vec3((static_cast<float>(t.x) + 0.5f) / context.frame_width,
-                (static_cast<float>(t.y) + 0.5f) / context.frame_height, 0.0f);
+    const Vec2 at = film.of(t.point.position);
+    return Vec3(at.x / context.frame_width, at.y / context.frame_height, 0.0f);
   });
   put(PointInput::kParametric, [](const ShadeTask& t) { return Vec3(t.hit.u, t.hit.v, 0.0f); });
   put(PointInput::kTangent, [&](const ShadeTask& t) { return tangent(Placed(context, t), t); });
   put(PointInput::kObjectLocation, [&](const ShadeTask& t) {
     return Vec3(Placed(context, t).object_location() + context.origin);
   });
-  constexpr PointInput kAxes[] = {PointInput::kObjectX, PointInput::kObjectY, PointInput::kObjectZ};
-  for (int axis = 0; axis < 3; ++axis) {
-    put(kAxes[axis],
-        [&](const ShadeTask& t) { return Placed(context, t).instance->world_from_local[axis]; });
-  }
   put(PointInput::kObjectColor, [&](const ShadeTask& t) { return object(t).color; });
   put_float(PointInput::kObjectAlpha, [&](const ShadeTask& t) { return object(t).alpha; });
   put_float(PointInput::kBackfacing,
@@ -160,9 +170,16 @@ const ShadePoints& MaterialPoints::fill(const RenderContext& context, const Prog
     return t.hit.instance < random.size() ? random[t.hit.instance] : 0.0f;
   });
   put_float(PointInput::kRayLength, [](const ShadeTask& t) { return t.hit.t; });
+  for (const auto& [input, column] :
+       {std::pair(PointInput::kObjectX, 0), std::pair(PointInput::kObjectY, 1),
+        std::pair(PointInput::kObjectZ, 2)}) {
+    put(input, [&, at = column](const ShadeTask& t) {
+      return Placed(context, t).instance->world_from_local[at];
+    });
+  }
   if (program.asks(PointInput::kDx) || program.asks(PointInput::kDy)) {
     Vec3 dx[Program::kLanes], dy[Program::kLanes];
-    for (std::uint32_t i = 0; i < count; ++i) differentials(context, tasks[i], dx[i], dy[i]);
+    for (std::uint32_t i = 0; i < count; ++i) differentials(context, film, tasks[i], dx[i], dy[i]);
     put(PointInput::kDx, [&](const ShadeTask& t) { return dx[&t - tasks]; });
     put(PointInput::kDy, [&](const ShadeTask& t) { return dy[&t - tasks]; });
   }
@@ -176,14 +193,14 @@ void MaterialPoints::fill_attributes(const RenderContext& context, const Program
   const auto& names = program.attributes();
   attributes_.resize(4 * kLanes * names.size());
   attribute_columns_.resize(4 * names.size());
+  if (names.empty()) return;
+  const FilmPlace film(context.camera);
   for (std::size_t a = 0; a < names.size(); ++a) {
     float* const to = &attributes_[4 * kLanes * a];
     for (std::size_t c = 0; c < 4; ++c) attribute_columns_[4 * a + c] = to + c * kLanes;
-    // "dx:" and "dy:" before a name: how much it changes over that step
-    const bool changes = names[a].starts_with("dx:") || names[a].starts_with("dy:");
-    const auto way = names[a].starts_with("dy:") ? PointInput::kDy : PointInput::kDx;
-    const bool steps = changes && program.asks(way);
-    const Column* const step = inputs_[static_cast<std::size_t>(way)];
+    // "dx:" and "dy:" ask for how much the rest changes from pixel to pixel.
+    const bool is_x = names[a].starts_with("dx:"), is_step = is_x || names[a].starts_with("dy:");
+    const char* name = names[a].c_str() + (is_step ? 3 : 0);
     const MeshView* known = nullptr;
     const AttributeView* found = nullptr;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -191,20 +208,17 @@ void MaterialPoints::fill_attributes(const RenderContext& context, const Program
       const MeshView& mesh = context.scene.meshes[context.scene.instances[hit.instance].mesh];
       if (&mesh != known) {
         known = &mesh;
-        found = find_attribute(mesh, names[a].c_str() + (changes ? 3 : 0));
+        found = find_attribute(mesh, name);
       }
-      float value[4] = {0.0f, 0.0f, 0.0f, 0.0f};
-      if (found != nullptr && (!changes || steps)) {
-        attribute_at(mesh, *found, hit.primitive, hit.u, hit.v, value);
+      Vec4 value(0.0f);
+      if (found != nullptr) value = attribute_at(mesh, *found, hit.primitive, hit.u, hit.v);
+      if (found != nullptr && is_step) {
+        Vec3 dx, dy;
+        differentials(context, film, tasks[i], dx, dy);
+        const Vec2 step = barycentric_step(Placed(context, tasks[i]), tasks[i], is_x ? dx : dy);
+        value = attribute_at(mesh, *found, hit.primitive, hit.u + step.x, hit.v + step.y) - value;
       }
-      if (found != nullptr && steps) {
-        float there[4] = {0.0f, 0.0f, 0.0f, 0.0f};
-        const Vec2 moved = barycentric_step(Placed(context, tasks[i]), tasks[i],
-                                            Vec3(step[0][i], step[1][i], step[2][i]));
-        attribute_at(mesh, *found, hit.primitive, hit.u + moved.x, hit.v + moved.y, there);
-        for (int c = 0; c < 4; ++c) value[c] = there[c] - value[c];
-      }
-      for (std::size_t c = 0; c < 4; ++c) to[c * kLanes + i] = value[c];
+      for (std::size_t c = 0; c < 4; ++c) to[c * kLanes + i] = value[static_cast<int>(c)];
     }
   }
   points_.attribute = reinterpret_cast<const float* const(*)[4]>(attribute_columns_.data());

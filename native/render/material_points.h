@@ -13,7 +13,6 @@ struct ShadeTask {
   Vec3 direction{0.0f};  ///< of the ray, unit
   float time = 0.0f;
   std::uint32_t material = kNone;
-  std::uint32_t x = 0, y = 0;    ///< the pixel of the full frame
   std::uint32_t pixel_seed = 0;  ///< Sampler::pixel_seed
   std::uint32_t sample = 0;      ///< of the camera
   std::uint32_t vertex = 0;      ///< of the path; 0: what the camera sees

@@ -32,15 +32,14 @@ struct Outputs {
 };
 
 /// One lobe in proportion to what it reflects, chosen by u.
-SurfaceShading choose(const SurfaceProgram& surface, const Outputs& at, const Vec3& normal,
-                      float u) {
-  SurfaceShading shading;
+Shading choose(const SurfaceProgram& surface, const Outputs& at, float u, ChosenLobe& lobe_chosen) {
+  Shading shading;
+  shading.albedo = shading.color = Vec3(0.0f);
   // What has met the surface was not let through: the weights are those of the rest.
   const float solid = 1.0f - clear_share(at.vector(SurfaceProgram::kTransparency));
   const float scale = solid > 0.0f ? 1.0f / solid : 0.0f;
   shading.emission = scale * at.weight(SurfaceProgram::kEmission);
   shading.holdout = std::min(scale * weight_of(at.rows[SurfaceProgram::kHoldout][at.lane]), 1.0f);
-  shading.normal = normal;
   float total = 0.0f;
   for (const SurfaceLobe& lobe : surface.lobes) {
     const Vec3 weight = scale * at.weight(lobe.weight);
@@ -61,58 +60,60 @@ SurfaceShading choose(const SurfaceProgram& surface, const Outputs& at, const Ve
   }
   const Vec3 weight = scale * at.weight(chosen->weight);
   shading.albedo = share == total ? weight : weight * (total / share);
-  shading.transmits = chosen->transmits;
+  lobe_chosen.transmits = chosen->transmits;
   if (chosen->normal != kNone) {
-    shading.normal = detail::unit_or(at.vector(chosen->normal), normal);
+    lobe_chosen.normal = detail::unit_or(at.vector(chosen->normal), lobe_chosen.normal);
   }
   return shading;
 }
 
 }  // namespace
 
-void MaterialShader::run(const Program& program, const ShadeTask* tasks, std::uint32_t count) {
+void MaterialShader::run(const RenderContext& context, const Program& program,
+                         const ShadeTask* tasks, std::uint32_t count) {
   const std::size_t outputs = program.output_count();
   if (results_.size() < outputs * kLanes) results_.resize(outputs * kLanes);
   rows_.resize(outputs);
   for (std::size_t i = 0; i < outputs; ++i) rows_[i] = &results_[i * kLanes];
-  program.run(points_.fill(context_, program, tasks, count), scratch_, rows_.data());
+  program.run(points_.fill(context, program, tasks, count), scratch_, rows_.data());
 }
 
-void MaterialShader::shade(std::span<const ShadeTask> tasks, SurfaceShading* shadings) {
+void MaterialShader::shade(const RenderContext& context, std::span<ShadeTask> tasks,
+                           Shading* shadings) {
   for (std::size_t begin = 0; begin < tasks.size();) {
     const std::uint32_t index = tasks[begin].material;
     const std::uint32_t vertex = tasks[begin].vertex;
     std::size_t end = begin + 1;
-    while (end < tasks.size() && end - begin < kLanes && tasks[end].material == index &&
-           tasks[end].vertex == vertex) {
-      ++end;
+    while (end < tasks.size() && end - begin < kLanes && tasks[end].material == index) ++end;
+    const SurfaceProgram& surface = context.tables->surface(index).of_vertex(vertex);
+    if (!surface.program) {  // a surface without a material
+      std::fill(shadings + begin, shadings + end,
+                Shading{context.clay_albedo, Vec3(0.0f), context.clay_albedo, 0.0f});
+      begin = end;
+      continue;
     }
-    const SurfaceProgram& surface = context_.tables->surface(index).of_vertex(vertex);
-    run(*surface.program, &tasks[begin], static_cast<std::uint32_t>(end - begin));
+    run(context, *surface.program, &tasks[begin], static_cast<std::uint32_t>(end - begin));
     for (std::size_t i = begin; i < end; ++i) {
-      const ShadeTask& task = tasks[i];
-      const float u = surface.lobes.size() < 2
-                          ? 0.0f
-                          : Sampler(task.pixel_seed)
-                                .sample_1d(vertex_dimension(vertex, kVertexLobe), task.sample);
-      shadings[i] = choose(surface, {rows_.data(), static_cast<std::uint32_t>(i - begin)},
-                           task.point.normal, u);
+      ShadeTask& task = tasks[i];
+      const bool draws = surface.lobes.size() > 1;
+      const Sampler sampler(task.pixel_seed);
+      const float u =
+          draws ? sampler.sample_1d(vertex_dimension(vertex, kVertexLobe), task.sample) : 0.0f;
+      ChosenLobe lobe{task.point.normal, false};
+      shadings[i] = choose(surface, {rows_.data(), static_cast<std::uint32_t>(i - begin)}, u, lobe);
+      task.point.normal = lobe.transmits ? -lobe.normal : lobe.normal;
+      if (lobe.transmits) task.point.geometric_normal = -task.point.geometric_normal;
     }
     begin = end;
   }
 }
 
-void MaterialShader::clear_shares(std::span<const ShadeTask> tasks, bool to_light, float* shares) {
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    const Material& material = context_.tables->surface(tasks[i].material);
-    shares[i] = 0.0f;
-    if (!material.clear) continue;
-    const SurfaceProgram& surface = material.of_vertex(tasks[i].vertex);
-    const Program& program = to_light ? *material.clear : *surface.program;
-    run(program, &tasks[i], 1);
-    const std::uint32_t first = to_light ? 0 : SurfaceProgram::kTransparency;
-    shares[i] = clear_share(Outputs{rows_.data(), 0}.vector(first));
-  }
+float MaterialShader::clear_share_of(const RenderContext& context, const ShadeTask& task,
+                                     bool to_light) {
+  const Material& material = context.tables->surface(task.material);
+  const SurfaceProgram& surface = material.of_vertex(task.vertex);
+  run(context, to_light ? *material.clear : *surface.program, &task, 1);
+  return clear_share(Outputs{rows_.data(), 0}.vector(to_light ? 0 : SurfaceProgram::kTransparency));
 }
 
 }  // namespace komorebi

@@ -10,20 +10,18 @@ namespace komorebi {
 /// Runs materials at hits; one a thread. What it says of a hit depends on that hit alone.
 class MaterialShader {
  public:
-  explicit MaterialShader(const RenderContext& context) : context_(context) {}
+  /// The shading of hits that were not let through, each for its own path; their points become
+  /// those of the lobes that were chosen. Hits of one material that follow each other run together.
+  void shade(const RenderContext& context, std::span<ShadeTask> tasks, Shading* shadings);
 
-  /// The shading of hits that were not let through, each for its own path. Hits of one material
-  /// that follow each other run together.
-  void shade(std::span<const ShadeTask> tasks, SurfaceShading* shadings);
-
-  /// How much of the rays that meet these hits goes straight through.
+  /// How much of the rays that meet a hit goes straight through.
   /// @param to_light  of rays that look for light, else of those that look at surfaces
-  void clear_shares(std::span<const ShadeTask> tasks, bool to_light, float* shares);
+  float clear_share_of(const RenderContext& context, const ShadeTask& task, bool to_light);
 
  private:
-  void run(const Program& program, const ShadeTask* tasks, std::uint32_t count);
+  void run(const RenderContext& context, const Program& program, const ShadeTask* tasks,
+           std::uint32_t count);
 
-  const RenderContext& context_;
   MaterialPoints points_;
   Program::Scratch scratch_;
   std::vector<float> results_;  // [outputs][kLanes]

@@ -111,6 +111,45 @@ void Mesh::take_uvs(const MeshInput& in, ThreadPool& pool, const Cancel& cancel)
   });
 }
 
+void Mesh::take_attributes(const MeshInput& in, ThreadPool& pool, const Cancel& cancel) {
+  if (in.attributes.empty()) return;
+  const auto& corners = geometry_->tri2corner;
+  Array<std::uint32_t> tri2face(triangle_count());
+  spread(in, tri2face, pool, cancel,
+         [](std::size_t face) { return static_cast<std::uint32_t>(face); });
+  const AttributeRows rows[] = {
+      {AttributeDomain::kVertex, "vertex", vertex_count(), {}, vertex_count()},
+      {AttributeDomain::kCorner, "corner", in.corner2vtx.size(), corners,
+       3 * std::size_t{triangle_count()}},
+      {AttributeDomain::kFace, "face", in.face_offsets.size() - 1, tri2face, triangle_count()}};
+  attributes_ = std::make_shared<const MeshAttributes>("mesh \"" + name_ + "\"", in.attributes,
+                                                       rows, pool, cancel);
+}
+
+void Mesh::take_attributes(const CurvesInput& in, ThreadPool& pool, const Cancel& cancel) {
+  if (in.attributes.empty()) return;
+  std::vector<std::uint32_t> segment2curve;
+  for (std::size_t c = 0; c + 1 < in.curve_offsets.size(); ++c) {
+    const auto keys = static_cast<std::size_t>(in.curve_offsets[c + 1] - in.curve_offsets[c]);
+    segment2curve.insert(segment2curve.end(), keys > 0 ? keys - 1 : 0,
+                         static_cast<std::uint32_t>(c));
+  }
+  const std::size_t keys = in.key2radius.size();
+  const AttributeRows rows[] = {{AttributeDomain::kVertex, "key", keys, {}, keys},
+                                {AttributeDomain::kFace, "curve", in.curve_offsets.size() - 1,
+                                 segment2curve, segment2curve.size()}};
+  attributes_ = std::make_shared<const MeshAttributes>("curves \"" + name_ + "\"", in.attributes,
+                                                       rows, pool, cancel);
+}
+
+void Mesh::take_attributes(const PointsInput& in, ThreadPool& pool, const Cancel& cancel) {
+  if (in.attributes.empty()) return;
+  const std::size_t points = in.point2radius.size();
+  const AttributeRows rows[] = {{AttributeDomain::kVertex, "point", points, {}, points}};
+  attributes_ = std::make_shared<const MeshAttributes>("points \"" + name_ + "\"", in.attributes,
+                                                       rows, pool, cancel);
+}
+
 void Mesh::take_steps(std::span<const float> positions, ThreadPool& pool, const Cancel& cancel) {
   step_xyz_.resize(positions.size());
   const Vec3 shift(origin());  // exact: see MeshGeometry
@@ -140,6 +179,7 @@ std::shared_ptr<const Mesh> Mesh::build(const MeshInput& in, Builder builder, Th
   mesh->take_normals(in, pool, cancel);
   mesh->take_materials(in, pool, cancel);
   mesh->take_uvs(in, pool, cancel);
+  mesh->take_attributes(in, pool, cancel);
   mesh->take_steps(in.step_positions, pool, cancel);
   return mesh;
 }
@@ -170,6 +210,7 @@ std::shared_ptr<const Mesh> Mesh::build(const CurvesInput& in, Builder builder, 
                                         const Cancel& cancel) {
   std::shared_ptr<Mesh> mesh(new Mesh(in.name, build_curves(in, builder, pool, cancel)));
   mesh->take_shading(in);
+  mesh->take_attributes(in, pool, cancel);
   mesh->take_steps(in.motion.steps, pool, cancel);
   return mesh;
 }
@@ -177,6 +218,7 @@ std::shared_ptr<const Mesh> Mesh::build(const CurvesInput& in, Builder builder, 
 std::shared_ptr<const Mesh> Mesh::build(const PointsInput& in, Builder builder, ThreadPool& pool,
                                         const Cancel& cancel) {
   std::shared_ptr<Mesh> mesh(new Mesh(in.name, build_points(in, builder, pool, cancel)));
+  mesh->take_attributes(in, pool, cancel);
   mesh->take_steps(in.motion.steps, pool, cancel);
   return mesh;
 }
@@ -211,6 +253,7 @@ std::shared_ptr<const Mesh> Mesh::flattened(const Mat4d& matrix, ThreadPool& poo
   mesh->name_ = name_;
   mesh->geometry_ = geometry;
   mesh->tri2uv_ = tri2uv_;
+  mesh->attributes_ = attributes_;
   mesh->tri2material_ = tri2material_;  // normals have no image under a flat matrix: flat shading
   return mesh;
 }
@@ -222,6 +265,7 @@ void Mesh::take_shading(const Mesh& other) {
   tri2smooth_ = other.tri2smooth_;
   tri2material_ = other.tri2material_;
   tri2uv_ = other.tri2uv_;
+  attributes_ = other.attributes_;
   step_xyz_ = other.step_xyz_;
   if (normals_.empty()) return;
   if (other.tri2normal_ == other.geometry_->tri2vtx.data()) {
@@ -283,6 +327,10 @@ MeshView Mesh::view() const {
   view.tri2smooth = tri2smooth_.empty() ? nullptr : tri2smooth_.data();
   view.tri2material = tri2material_.empty() ? nullptr : tri2material_.data();
   view.tri2uv = tri2uv_.empty() ? nullptr : tri2uv_.data();
+  if (attributes_) {
+    view.attributes = attributes_->views().data();
+    view.attribute_count = static_cast<std::uint32_t>(attributes_->views().size());
+  }
   view.tree = tree().view();
   view.clusters = tree().clusters.data();
   if (round_) round_->fill(view);
@@ -292,7 +340,8 @@ MeshView Mesh::view() const {
 std::size_t Mesh::byte_count() const {
   const std::size_t geometry = round_ ? round_->byte_count() : geometry_->byte_count();
   return sizeof(Mesh) + geometry + bytes(normals_) + bytes(every_corner_) + bytes(tri2smooth_) +
-         bytes(tri2material_) + bytes(tri2uv_) + bytes(step_xyz_);
+         bytes(tri2material_) + bytes(tri2uv_) + bytes(step_xyz_) +
+         (attributes_ ? attributes_->byte_count() : 0);
 }
 
 }  // namespace komorebi

@@ -69,6 +69,8 @@ class Mesh {
   }
   /// Which corners carry a triangle's UVs and normals, [triangles][3].
   std::vector<std::int32_t> tri2corner() const;
+  /// Null: none.
+  const MeshAttributes* attributes() const { return attributes_.get(); }
   std::size_t byte_count() const;
 
  private:
@@ -82,6 +84,9 @@ class Mesh {
   void take_normals(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
   void take_materials(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
   void take_uvs(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
+  void take_attributes(const MeshInput& input, ThreadPool& pool, const Cancel& cancel);
+  void take_attributes(const CurvesInput& input, ThreadPool& pool, const Cancel& cancel);
+  void take_attributes(const PointsInput& input, ThreadPool& pool, const Cancel& cancel);
   void take_steps(std::span<const float> positions, ThreadPool& pool, const Cancel& cancel);
 
   std::string name_;
@@ -94,9 +99,10 @@ class Mesh {
   const std::uint32_t* tri2normal_ = nullptr;  // into geometry_, or every_corner_
   Array<std::uint32_t> every_corner_;          // 0, 1, 2 …
   Array<std::uint8_t> tri2smooth_;
-  Array<std::uint16_t> tri2material_;  // of curves by segment
-  Array<float> tri2uv_;                // [triangles][3][2]; of curves [segments][2]
-  Array<float> step_xyz_;              // [2][vertices, keys or points][3], relative to the origin
+  Array<std::uint16_t> tri2material_;                 // of curves by segment
+  Array<float> tri2uv_;                               // [triangles][3][2]; of curves [segments][2]
+  std::shared_ptr<const MeshAttributes> attributes_;  // null: none
+  Array<float> step_xyz_;  // [2][vertices, keys or points][3], relative to the origin
 };
 
 }  // namespace komorebi

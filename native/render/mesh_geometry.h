@@ -8,6 +8,7 @@
 #include "bvh/mesh_tree.h"
 #include "bvh/moving_tree.h"
 #include "parallel/array.h"
+#include "render/mesh_attributes.h"
 
 namespace komorebi {
 
@@ -24,6 +25,7 @@ struct MeshInput {
   std::span<const std::uint8_t> face2smooth;    ///< [faces]; empty: every face is smooth
   std::span<const std::int32_t> face2material;  ///< [faces]; empty: slot 0
   std::span<const float> corner2uv;             ///< [corners][2]; empty: no UV map
+  std::vector<AttributeInput> attributes;       ///< named arrays that materials ask for
   /// Of a mesh that deforms: positions at the other times, [2 k][vertices][3] in their order.
   /// `vtx2xyz` are those in the middle; all together are at even times over the shutter.
   std::span<const float> motion_positions;

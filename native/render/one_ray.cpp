@@ -1,6 +1,7 @@
 #include "render/one_ray.h"
 
 #include "bvh/traverse.h"
+#include "core/path_key.h"
 #include "render/ambient.h"
 #include "render/light.h"
 #include "render/pass_row.h"
@@ -20,6 +21,7 @@ Ray start_ray(const RenderContext& context, std::uint32_t x, std::uint32_t y,
       shutter_time(context.camera.shutter, sampler.sample_1d(kDimensionTime, sample), y);
   Ray ray = camera_ray(context.camera, film, sampler.sample_2d(kDimensionLens, sample), time);
   ray.mask = kMaskCamera;
+  ray.path_key = path_key(sampler.pixel_seed, kDimensionPixel, sample);
   return ray;
 }
 
@@ -55,12 +57,14 @@ void for_each_light_ray(const RenderContext& context, const SurfacePoint& point,
   SurfacePoint lit = point;
   if (context.bends_round && end.cutoff > 0.0f) lit.geometric_normal = point.normal;
   for (std::uint32_t j = 0; j < context.light_samples; ++j) {
-    LightSample drawn = sample_light(context, lit, sampler, sample * context.light_samples + j);
+    const std::uint32_t index = sample * context.light_samples + j;
+    LightSample drawn = sample_light(context, lit, sampler, index);
     if (drawn.contribution == Vec3(0.0f)) continue;
     const float geometric_cosine = glm::dot(drawn.direction, point.geometric_normal);
     const float share = terminate(context, end, glm::dot(drawn.direction, point.normal),
                                   geometric_cosine, drawn.contribution);
     Ray ray = light_ray(context, point, hit, drawn.direction, time);
+    ray.path_key = path_key(sampler.pixel_seed, context.light_dimension, index);
     if (share > 0.0f) {
       ray.origin += share * end.lift;
       // What lies below its own triangle has to pass over its edge.
@@ -90,25 +94,21 @@ Vec3 mean_light(const RenderContext& context, const SurfacePoint& point, const H
 }
 
 /// Adds what comes to the surface in view from others, vertex by vertex.
-void add_bounces(const RenderContext& context, SurfacePoint point, Hit hit, const Sampler& sampler,
-                 std::uint32_t sample, float time, Vec3& radiance) {
-  if (context.bounces == 0) return;
-  Vec3 throughput = shade_surface(context, 0).albedo;
+void add_bounces(const RenderContext& context, MaterialShader& shader, SurfacePoint point, Hit hit,
+                 Vec3 throughput, const Sampler& sampler, std::uint32_t sample, float time,
+                 Vec3& radiance) {
   for (std::uint32_t vertex = 0; vertex < context.bounces; ++vertex) {
     const Terminator end = terminator(context, hit, time, point.geometric_normal);
-    const ScatterPoint from{point.normal,
-                            point.geometric_normal,
-                            leaving_origin(point),
-                            end.frequency,
-                            time,
-                            hit.instance,
-                            hit.primitive};
+    const ScatterPoint from{
+        point.normal, point.geometric_normal, leaving_origin(point), end.frequency,
+        time,         hit.instance,           hit.primitive};
     Ray ray;
     if (!scatter(context, vertex, from, sampler, sample, throughput, ray)) return;
     hit = intersect_scalar(context.scene, ray);
     if (!hit.valid()) return;
     point = surface_point(context.scene, hit, ray);
-    const Shading shading = shade_surface(context, vertex + 1);
+    const Shading shading =
+        shade_surface(context, shader, hit, ray, sampler.pixel_seed, sample, vertex + 1, point);
     const Vec3 light =
         mean_light(later_context(context, vertex + 1), point, hit, sampler, sample, time);
     radiance += indirect_light(context, vertex + 1, throughput, shading, light);
@@ -117,12 +117,13 @@ void add_bounces(const RenderContext& context, SurfacePoint point, Hit hit, cons
 }
 
 /// The light that a shadow catcher would get if there were nothing but shadow catchers.
-Vec3 light_alone(const RenderContext& given, const SurfacePoint& point, const Hit& hit,
-                 const Shading& shading, const Sampler& sampler, std::uint32_t sample, float time) {
+Vec3 light_alone(const RenderContext& given, MaterialShader& shader, const SurfacePoint& point,
+                 const Hit& hit, const Shading& shading, const Sampler& sampler,
+                 std::uint32_t sample, float time) {
   const RenderContext context = alone_context(given);
   Vec3 radiance =
       direct_light(context, shading, mean_light(context, point, hit, sampler, sample, time));
-  add_bounces(context, point, hit, sampler, sample, time, radiance);
+  add_bounces(context, shader, point, hit, shading.albedo, sampler, sample, time, radiance);
   return radiance;
 }
 
@@ -141,12 +142,15 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
     put_matte(layout, hole, row);
     return hole;
   }
-  const SurfacePoint point = surface_point(context.scene, hit, ray);
+  SurfacePoint point = surface_point(context.scene, hit, ray);
   const Sampler sampler(context.seed, x, y);
-  put_surface(context, hit, ray, point.normal, camera_depth(context.camera, point.position), sample,
-              row);
+  MaterialShader shader;
+  const Shading shading =
+      shade_surface(context, shader, hit, ray, sampler.pixel_seed, sample, 0, point);
+  put_surface(context, hit, ray, point.normal, camera_depth(context.camera, point.position),
+              shading, sample, row);
   PixelSample result;
-  result.alpha = 1.0f;
+  result.alpha = 1.0f - shading.holdout;
   const AmbientPasses of_light = passes_of_light_rays(context);
   for_each_light_ray(context, point, hit, sampler, sample, ray.time,
                      [&](const LightSample& drawn, bool visible) {
@@ -154,10 +158,10 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
                        result.radiance += drawn.contribution;
                        add_ambient(layout, of_light, drawn.direction, drawn.contribution.x, row);
                      });
-  const Shading shading = shade_surface(context, 0);
-  result.radiance = direct_light(context, shading,
-                                 result.radiance / static_cast<float>(context.light_samples));
-  add_bounces(context, point, hit, sampler, sample, ray.time, result.radiance);
+  result.radiance =
+      direct_light(context, shading, result.radiance / static_cast<float>(context.light_samples));
+  add_bounces(context, shader, point, hit, shading.albedo, sampler, sample, ray.time,
+              result.radiance);
   for (const AmbientCast& cast : ambient_casts(context)) {
     for_each_light_ray(cast.context, point, hit, sampler, sample, ray.time,
                        [&](const LightSample& drawn, bool visible) {
@@ -172,7 +176,7 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
   } else {
     put_environment(context, ray.direction, row);
     layout.put(row, Quantity::kCatcherLight,
-               light_alone(context, point, hit, shading, sampler, sample, ray.time));
+               light_alone(context, shader, point, hit, shading, sampler, sample, ray.time));
   }
   return result;
 }

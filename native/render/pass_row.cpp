@@ -85,7 +85,7 @@ void put_values(const RenderContext& context, const Hit& hit, float* row) {
 }
 
 void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, const Vec3& normal,
-                 float depth, std::uint32_t sample, float* row) {
+                 float depth, const Shading& shading, std::uint32_t sample, float* row) {
   const PassLayout& layout = context.passes;
   const InstanceView& instance = context.scene.instances[hit.instance];
   const MeshView& mesh = context.scene.meshes[instance.mesh];
@@ -100,7 +100,8 @@ void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, c
   }
   put_values(context, hit, row);
   layout.put(row, Quantity::kNormal, normal);
-  layout.put(row, Quantity::kDiffuseColor, context.albedo);
+  layout.put(row, Quantity::kDiffuseColor, shading.color);
+  layout.put(row, Quantity::kEmission, shading.emission);
   layout.put(row, Quantity::kDenoisingRoughness, 1.0f);  // of matt surfaces, as in Cycles
   layout.put(row, Quantity::kDenoisingDepth, hit.t);
   if (context.has_vector) {
@@ -121,8 +122,7 @@ void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, c
 
 void put_environment(const RenderContext& context, const Vec3& direction, float* row) {
   if (!context.passes.keeps(Quantity::kEnvironment)) return;
-  context.passes.put(row, Quantity::kEnvironment,
-                     world_radiance(context, direction));
+  context.passes.put(row, Quantity::kEnvironment, world_radiance(context, direction));
 }
 
 void put_matte(const PassLayout& layout, const PixelSample& sample, float* row) {

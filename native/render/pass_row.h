@@ -2,6 +2,7 @@
 
 #include "render/context.h"
 #include "render/film.h"
+#include "render/material.h"
 
 namespace komorebi {
 
@@ -11,7 +12,7 @@ void clear_row(const PassLayout& layout, float* row);
 
 /// What is known of a surface in view before it is lit; `normal` and `depth` are its own.
 void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, const Vec3& normal,
-                 float depth, std::uint32_t sample, float* row);
+                 float depth, const Shading& shading, std::uint32_t sample, float* row);
 
 /// What the hit's material says for shader AOVs: part of put_surface, and all that a holdout
 /// leaves, as in Cycles.

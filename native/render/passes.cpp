@@ -22,6 +22,7 @@ constexpr PassDesc kPasses[] = {
     {"Mist", 1, kMean, Quantity::kMist},
     {"Environment", 3, kMean, Quantity::kEnvironment},
     {"Diffuse Color", 3, kMean, Quantity::kDiffuseColor},
+    {"Emission", 3, kMean, Quantity::kEmission},
     {"Denoising Normal", 3, kMean, Quantity::kDenoisingNormal},
     {"Denoising Roughness", 1, kMean, Quantity::kDenoisingRoughness},
     {"Denoising Depth", 1, kMean, Quantity::kDenoisingDepth},

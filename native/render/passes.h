@@ -35,6 +35,7 @@ enum class Quantity : std::uint8_t {
   kMist,
   kEnvironment,
   kDiffuseColor,
+  kEmission,
   kDenoisingNormal,
   kDenoisingRoughness,
   kDenoisingDepth,

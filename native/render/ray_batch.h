@@ -27,12 +27,13 @@ class RayBatch {
     words_[0][count_] = ray.mask;
     words_[1][count_] = ray.self_instance;
     words_[2][count_] = ray.self_primitive;
+    words_[3][count_] = ray.path_key;
     ++count_;
   }
 
   /// Makes room for `count` rays that are then written into the columns: nine of floats (origin,
-  /// direction, t_min, t_max, time) and three of words (mask, self_instance, self_primitive). The
-  /// columns are `padding` longer.
+  /// direction, t_min, t_max, time) and four of words (mask, self_instance, self_primitive,
+  /// path_key). The columns are `padding` longer.
   void resize(std::uint32_t count, std::uint32_t padding) {
     if (floats_[0].size() < count + padding) reserve(std::size_t{count} + padding);
     count_ = count;
@@ -53,12 +54,13 @@ class RayBatch {
             words_[0].data(),
             words_[1].data(),
             words_[2].data(),
-            count_};
+            count_,
+            words_[3].data()};
   }
 
  private:
   std::vector<float> floats_[9];         // origin xyz, direction xyz, t_min, t_max, time
-  std::vector<std::uint32_t> words_[3];  // mask, self_instance, self_primitive
+  std::vector<std::uint32_t> words_[4];  // mask, self_instance, self_primitive, path_key
   std::uint32_t count_ = 0;
 };
 

@@ -7,6 +7,7 @@
 
 #include "bvh/round_tree.h"
 #include "parallel/array.h"
+#include "render/mesh_attributes.h"
 
 namespace komorebi {
 
@@ -28,6 +29,7 @@ struct CurvesInput {
   std::span<const std::int32_t> curve2material;  ///< [curves]; empty: slot 0
   std::span<const float> curve2uv;               ///< [curves][2], where it grows; empty: no UVs
   RoundMotion motion{};
+  std::vector<AttributeInput> attributes{};  ///< kVertex: by key; kFace: by curve
 };
 
 /// A point cloud: a sphere a point.
@@ -36,6 +38,7 @@ struct PointsInput {
   std::span<const float> point2xyz;     ///< [points][3], object space
   std::span<const float> point2radius;  ///< [points], not negative; 0: it is not there
   RoundMotion motion{};
+  std::vector<AttributeInput> attributes{};  ///< kVertex: by point
 };
 
 inline constexpr std::uint32_t kMaxSubdivisions = 8;

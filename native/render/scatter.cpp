@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/path_key.h"
 #include "core/terminator.h"
 #include "core/warp.h"
 #include "render/shade.h"
@@ -34,6 +35,7 @@ bool scatter(const RenderContext& context, std::uint32_t vertex, const ScatterPo
   ray.mask = context.scatter_mask;
   ray.self_instance = point.instance;
   ray.self_primitive = point.primitive;
+  ray.path_key = path_key(sampler.pixel_seed, vertex_dimension(vertex, kVertexScatter), sample);
   return true;
 }
 

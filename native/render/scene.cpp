@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "render/material_filter.h"
 #include "render/world_program.h"
 
 namespace komorebi {
@@ -199,6 +200,11 @@ void Scene::set_surfaces(std::vector<Material> surfaces, std::vector<float> inst
     throw std::invalid_argument(std::to_string(surfaces.size()) + " surfaces for " +
                                 std::to_string(tables_.materials.size()) + " materials");
   }
+  for (const Material& material : surfaces) {
+    if (material.camera.program) {
+      emission_max_ = std::max(emission_max_, bound_of_emission(*material.camera.program));
+    }
+  }
   tables_.surfaces = std::move(surfaces);
   tables_.instance_random = std::move(instance_random);
 }
@@ -216,7 +222,7 @@ StepsView Scene::steps() const {
 float Scene::max_radiance() const {
   const float light = environment_ ? static_cast<float>(strength_) * environment_->max_radiance()
                                    : max_abs(world_color_);
-  return std::max(light, world_program_max_);
+  return std::max({light, world_program_max_, emission_max_});
 }
 
 void Scene::place(const InstanceInput& input, std::span<const Mat4d> poses, ThreadPool& pool,
@@ -230,7 +236,7 @@ void Scene::place(const InstanceInput& input, std::span<const Mat4d> poses, Thre
   }
   instance.flags = input.flags & 3u;
   instance.object_index = input.object_index;
-  instance.material_slots = input.material_slots;
+  instance.material_slots = input.material_slots & 0x7fffffffu;
   Mat3d linear(input.world_from_object);
   Mat3d inverse;
   Vec3d position = Vec3d(input.world_from_object[3]);
@@ -348,6 +354,8 @@ void Scene::commit(ThreadPool& pool, const Cancel& cancel, bool keep_inputs) {
     std::vector<Mat4d>().swap(poses_);
     inputs_gone_ = true;
   }
+  filter_by_materials();
+  mark_filtered();
   view_meshes();
   build_tree(pool, cancel);
   if (has_camera_) {
@@ -369,6 +377,7 @@ void Scene::commit(ThreadPool& pool, const Cancel& cancel, bool keep_inputs) {
   view_.motion_group_count = static_cast<std::uint32_t>(motion_.groups.size());
   view_.moves = !motion_.groups.empty();
   for (const auto& mesh : traced_meshes_) view_.moves = view_.moves || mesh->deforms();
+  if (material_filter_) material_filter_->bind(*this);
   if (!is_still()) return;
   for (const auto& mesh : traced_meshes_) mesh_steps_.push_back(mesh->step_positions());
 }

@@ -18,6 +18,8 @@
 
 namespace komorebi {
 
+class MaterialFilter;  // render/material_filter.h
+
 /// One placement of a mesh. `world_from_object` is in metres from Blender's world origin.
 struct InstanceInput {
   std::uint32_t mesh = 0;
@@ -58,6 +60,11 @@ class Scene {
   void set_camera(const CameraDesc& camera);
   /// Throws std::invalid_argument when lists of slots name what is not there.
   void set_tables(SceneTables tables);
+  /// Which hits count on instances that have a see-through material among their slots; what the
+  /// filter reads outlives the scene.
+  /// @param see_through  [materials of the tables], not 0: the filter is asked
+  /// commit throws std::invalid_argument if there are not as many.
+  void set_hit_filter(const HitFilter& filter, std::vector<std::uint8_t> see_through);
 
   /// What surfaces look like, a material of the tables each; after set_tables.
   /// @param instance_random  of each instance a number from 0 to 1, or none at all
@@ -118,6 +125,8 @@ class Scene {
   void place(const InstanceInput& input, std::span<const Mat4d> poses, ThreadPool& pool,
              const Cancel& cancel);
   void add_steps(std::span<const Mat4d> poses, const Vec3d& mesh_origin);
+  void filter_by_materials();
+  void mark_filtered();
   void view_meshes();
   void build_tree(ThreadPool& pool, const Cancel& cancel);
 
@@ -135,9 +144,13 @@ class Scene {
   double strength_ = 1.0;
   std::shared_ptr<const Program> world_program_;
   float world_program_max_ = 0.0f;
+  float emission_max_ = 0.0f;  // of surfaces, as far as is known
   Mat3d texture_from_world_{1.0};
   CameraDesc camera_desc_;
   SceneTables tables_;
+  HitFilter hit_filter_;
+  std::shared_ptr<MaterialFilter> material_filter_;  // null: nothing is see-through
+  std::vector<std::uint8_t> see_through_;            // of tables_.materials
 
   Vec3d origin_{0.0};
   std::vector<std::shared_ptr<const Mesh>> traced_meshes_;  // meshes_, then the flattened ones

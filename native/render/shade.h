@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "render/context.h"
+#include "render/material_shader.h"
 #include "render/surface_batch.h"
 
 namespace komorebi {
@@ -13,15 +16,38 @@ inline Vec3 lit_albedo(const RenderContext& context, std::uint32_t vertex) {
   return alike && context.method == Method::kWorldLight ? context.clay_albedo : Vec3(1.0f);
 }
 
-/// The shading of one hit. What is seen under ambient occlusion is white: it shows how open a
-/// surface is, and bounces how bright its surroundings would be.
-inline Shading shade_surface(const RenderContext& context, std::uint32_t vertex) {
+/// The shading of every hit of a vertex where there are no materials. What is seen under ambient
+/// occlusion is white: it shows how open a surface is, and bounces how bright its surroundings
+/// would be.
+inline Shading clay_shading(const RenderContext& context, std::uint32_t vertex) {
   const bool white = vertex == 0 && context.method == Method::kAmbientOcclusion;
-  return {white ? Vec3(1.0f) : context.clay_albedo, Vec3(0.0f)};
+  const Vec3 albedo = white ? Vec3(1.0f) : context.clay_albedo;
+  return {albedo, Vec3(0.0f), albedo, 0.0f};
 }
 
-/// The same for all surfaces of a batch.
-void shade_surfaces(const RenderContext& context, std::uint32_t vertex, SurfaceBatch& surfaces);
+/// A hit as its material is asked about it.
+ShadeTask shade_task(const RenderContext& context, const Hit& hit, const SurfacePoint& point,
+                     const Vec3& direction, float time, std::uint32_t pixel_seed,
+                     std::uint32_t sample, std::uint32_t vertex);
+
+/// The shading of one hit; `point` becomes that of the lobe that its path takes.
+Shading shade_surface(const RenderContext& context, MaterialShader& shader, const Hit& hit,
+                      const Ray& ray, std::uint32_t pixel_seed, std::uint32_t sample,
+                      std::uint32_t vertex, SurfacePoint& point);
+
+/// The same for all surfaces of a batch. Its arrays grow once.
+class BatchShader {
+ public:
+  /// @param light_samples  of each path at this vertex
+  void shade(const RenderContext& context, std::uint32_t vertex, const Hit* hits,
+             const RaySpan& rays, std::uint32_t light_samples, SurfaceBatch& surfaces);
+
+ private:
+  MaterialShader shader_;
+  std::vector<std::uint64_t> order_;  // material, then surface
+  std::vector<ShadeTask> tasks_;
+  std::vector<Shading> shadings_;
+};
 
 /// `light`, scaled so that the sum of its channels stays within a limit (Cycles' Clamp).
 inline Vec3 clamp_light(const Vec3& light, float limit) {

@@ -5,6 +5,7 @@
 
 #include "bvh/traverse.h"
 #include "core/octahedral.h"
+#include "core/path_key.h"
 #include "core/warp.h"
 #include "render/bundle_batch.h"
 #include "render/one_ray.h"
@@ -106,8 +107,10 @@ bool measure_sky_visibility(const RenderContext& given, ThreadPool& pool, const 
         const Frame frame = make_frame(point.normal);
         const Sampler sampler(context.seed, grid.x(column), y);
         for (std::uint32_t i = 0; i < per_point; ++i) {
-          const Vec2 u = sampler.sample_2d(vertex_dimension(0, kVertexLightDirection), i);
-          batch.push_ray(frame.to_world(cosine_hemisphere_disk(u)), context.light_distance);
+          const std::uint32_t dimension = vertex_dimension(0, kVertexLightDirection);
+          const Vec2 u = sampler.sample_2d(dimension, i);
+          batch.push_ray(frame.to_world(cosine_hemisphere_disk(u)), context.light_distance,
+                         path_key(sampler.pixel_seed, dimension, i));
         }
       }
       const RayBundles bundles = batch.bundles(context.light_mask);

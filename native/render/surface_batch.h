@@ -5,15 +5,10 @@
 #include "core/ray_bundles.h"
 #include "render/light.h"
 #include "render/light_kernel.h"
+#include "render/material.h"
 #include "render/surface_kernel.h"
 
 namespace komorebi {
-
-/// What a surface does with light: the share of each channel that it reflects, and what it shines.
-struct Shading {
-  Vec3 albedo{1.0f};
-  Vec3 emission{0.0f};
-};
 
 /// Owns the arrays behind a SurfaceBlock: the surfaces that a batch of camera rays has hit, and
 /// where their light rays stand in their pixels' sequences. Grows once.
@@ -49,17 +44,47 @@ class SurfaceBatch {
     }
   }
   void set_shading(std::uint32_t i, const Shading& shading) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      shading_[c][i] = shading.albedo[static_cast<int>(c)];
-      shading_[3 + c][i] = shading.emission[static_cast<int>(c)];
+    for (int c = 0; c < 3; ++c) {
+      const auto column = static_cast<std::size_t>(c);
+      shading_[column][i] = shading.albedo[c];
+      shading_[3 + column][i] = shading.emission[c];
+      shading_[6 + column][i] = shading.color[c];
     }
+    shading_[9][i] = shading.holdout;
   }
+  /// A surface that its material has given another normal, or turned to its other side.
+  void set_point(const RenderContext& context, std::uint32_t i, const SurfacePoint& point,
+                 const Terminator& terminator) {
+    set_vector(0, i, point.normal);
+    set_vector(3, i, point.geometric_normal);
+    set_vector(6, i, komorebi::leaving_origin(point));
+    if (!context.has_terminators) return;
+    set_vector(14, i, terminator.lift);
+    floats_[17][i] = terminator.cutoff;
+    floats_[18][i] = terminator.frequency;
+    if (!context.bends_round) return;
+    set_vector(11, i, terminator.cutoff > 0.0f ? point.normal : point.geometric_normal);
+  }
+  /// Where surfaces have materials.
+  SurfacePoint point(std::uint32_t i) const {
+    SurfacePoint point;
+    point.position = vector(19, i);
+    point.geometric_normal = geometric_normal(i);
+    point.normal = normal(i);
+    point.offset = floats_[22][i];
+    return point;
+  }
+  std::uint32_t pixel_seed(std::uint32_t i) const { return pixel_seed_[i]; }
+  std::uint32_t first_index(std::uint32_t i) const { return first_index_[i]; }
   /// What shade_surfaces has set.
   Vec3 albedo(std::uint32_t i) const {
     return Vec3(shading_[0][i], shading_[1][i], shading_[2][i]);
   }
   Shading shading(std::uint32_t i) const {
-    return {albedo(i), Vec3(shading_[3][i], shading_[4][i], shading_[5][i])};
+    const auto vector_at = [&](std::size_t first) {
+      return Vec3(shading_[first][i], shading_[first + 1][i], shading_[first + 2][i]);
+    };
+    return {vector_at(0), vector_at(3), vector_at(6), shading_[9][i]};
   }
 
   void push(std::uint32_t path, const Hit& hit, float time, std::uint32_t pixel_seed,
@@ -85,6 +110,8 @@ class SurfaceBatch {
       block.leaving_origin[c] = floats_[6 + c].data();
     }
     block.depth = floats_[9].data();
+    for (std::size_t c = 0; c < 3; ++c) block.position[c] = floats_[19 + c].data();
+    block.offset = floats_[22].data();
     for (std::size_t c = 0; c < 3; ++c) block.lift[c] = floats_[14 + c].data();
     block.cutoff = floats_[17].data();
     block.frequency = floats_[18].data();
@@ -136,12 +163,16 @@ class SurfaceBatch {
     return Vec3(floats_[first][i], floats_[first + 1][i], floats_[first + 2][i]);
   }
 
+  void set_vector(std::size_t first, std::uint32_t i, const Vec3& v) {
+    for (std::size_t c = 0; c < 3; ++c) floats_[first + c][i] = v[static_cast<int>(c)];
+  }
+
   std::uint32_t count_ = 0;
   std::vector<std::uint32_t> path_, pixel_seed_, first_index_, instance_, primitive_;
   // normal, geometric normal, leaving origin, depth, time, the normal above which light comes, and
-  // the terminator's lift, cutoff and frequency
-  std::vector<float> floats_[19];
-  std::vector<float> shading_[6];  // albedo and emission, once they are asked for
+  // the terminator's lift, cutoff and frequency; position and offset
+  std::vector<float> floats_[23];
+  std::vector<float> shading_[10];  // albedo, emission, colour, holdout: once they are asked for
 };
 
 }  // namespace komorebi

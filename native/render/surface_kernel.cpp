@@ -15,6 +15,10 @@ void surface_point_at(const RenderContext& context, const SurfaceBlock& block, s
     block.leaving_origin[c][i] = origin[c];
   }
   block.depth[i] = camera_depth(context.camera, point.position);
+  if (context.has_materials) {
+    for (int c = 0; c < 3; ++c) block.position[c][i] = point.position[c];
+    block.offset[i] = point.offset;
+  }
   if (!context.has_terminators) return;
   const Terminator end =
       terminator(context, block.hits[path], block.rays.time[path], point.geometric_normal);

@@ -15,6 +15,8 @@ struct SurfaceBlock {
   float *normal[3], *geometric_normal[3];
   float* leaving_origin[3];
   float* depth;  ///< camera_depth
+  /// SurfacePoint's; written where surfaces have materials alone.
+  float *position[3], *offset;
   /// The point's Terminator; nothing is written unless the context has terminators.
   float *lift[3], *cutoff, *frequency;
 };

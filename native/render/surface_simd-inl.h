@@ -251,6 +251,10 @@ HWY_INLINE void finish_points(const RenderContext& context, const HitLanes& hit,
   const Double depth = camera.kind == CameraKind::kPanorama ? hn::Sqrt(dot(from_eye, from_eye))
                                                             : dot(from_eye, gradient);
   hn::StoreU(to_float(depth), TagF(), block.depth + to);
+  if (context.has_materials) {
+    store(position, block.position, to);
+    hn::StoreU(offset, TagF(), block.offset + to);
+  }
   if (context.has_terminators) {
     finish_terminators(hit, world_from_local, local_from_world, geometric, block, to);
   }

@@ -10,6 +10,12 @@ bool Program::constant() const {
                      [](const Source& s) { return s.row == kNoRow; });
 }
 
+float Program::largest_constant() const {
+  float largest = 1.0f;
+  for (const float c : constants_) largest = std::max(largest, c);
+  return largest;
+}
+
 void Program::run(const ShadePoints& points, Scratch& scratch, float* const* out) const {
   const std::uint32_t count = points.count;
   if (scratch.rows_.size() < std::size_t{row_count_} * kLanes) {

@@ -46,6 +46,8 @@ class Program {
   bool constant(std::size_t output) const { return outputs_[output].row == kNoRow; }
   float constant_value(std::size_t output) const { return outputs_[output].constant; }
   bool constant() const;
+  /// Of the numbers that operations work on, at least 1.
+  float largest_constant() const;
   bool asks(PointInput input) const { return inputs_ >> static_cast<std::uint32_t>(input) & 1u; }
   /// Names of the attributes that points need, in the order of ShadePoints::attribute.
   const std::vector<std::string>& attributes() const { return attributes_; }

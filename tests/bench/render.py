@@ -67,6 +67,7 @@ def render(
         "width": size[0],
         "height": size[1],
         "views": views,
+        "bounces": scene.bounces,
         "cycles": {},
         "komorebi": {},
         engine.lower(): settings or {},
@@ -108,7 +109,7 @@ def module_version() -> str:
 def reference_file(scene: Scene, engine: str, samples: int, seed: int) -> Path:
     """Where one seed's part of a reference is kept."""
     who = module_version() if engine == "KOMOREBI" else "4.5"
-    name = f"{blend_file(scene).stem}-{scene.mode}-{small_size(scene)[0]}-{engine}-{who}-{samples}-{seed}.npy"
+    name = f"{blend_file(scene).stem}-{scene.mode}-{scene.bounces}-{small_size(scene)[0]}-{engine}-{who}-{samples}-{seed}.npy"
     return meshes.FOLDER / "references" / name
 
 

@@ -29,6 +29,7 @@ class Scene:
     samples: int = 64  # Cycles', which set the error to be met
     views: int = 0
     size: tuple[int, int] = (1280, 720)
+    bounces: int = 0
 
 
 SCENES = (
@@ -36,6 +37,7 @@ SCENES = (
     Scene("dragon-map", "dragon on a ground, map", "world", "dragon", "meshes/dragon_vrip.ply.gz"),
     Scene("interior-ao", "sponza inside, white sky", "ao", "interior", "meshes/sponza_dabrovic.ply"),
     Scene("interior-map", "sponza inside, map", "world", "interior", "meshes/sponza_dabrovic.ply"),
+    Scene("interior-bounces", "sponza inside, map, 4 bounces", "world", "interior", "meshes/sponza_dabrovic.ply", bounces=4),
     Scene("instances-map", "10,000 instances of the dragon, map", "world", "instances", "meshes/dragon_vrip.ply.gz", 16),
     Scene("bmw-ao", "BMW, white sky", "ao", "file", "blends/bmw27_cpu.blend"),
     Scene("views-map", "24 views of the dragon, map, one process", "world", "dragon", "meshes/dragon_vrip.ply.gz", 32, 24, (512, 512)),

@@ -8,7 +8,7 @@ import support
 def render_both(scene, folder, name="both", filter_width=1.5):
     """Channels of Komorebi's and of Cycles' render, without the layer's name, and our metadata."""
     layer = bpy.context.view_layer
-    scene.komorebi.method = "WORLD_LIGHT"
+    scene.komorebi.method, scene.komorebi.bounces = "WORLD_LIGHT", 0
     scene.komorebi.samples, scene.cycles.samples = 64, 64
     scene.komorebi.filter_width = scene.cycles.filter_width = filter_width
     scene.cycles.max_bounces = 0

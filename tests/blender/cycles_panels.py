@@ -6,7 +6,8 @@ Cycles' own `ui.py` in every release.
 
 VOLUMES = "volumes are not rendered"
 LAMPS = "light comes from the world alone: lamps give none"
-BOUNCES = "light is traced without bounces"
+GUIDING = "light rays are guided by what surfaces see of the sky, bounces by the cosine alone"
+FAST_GI = "light bounces, or does not: there is no approximation of it"
 VIEWPORT = "there is no rendered view in the viewport"
 BAKING = "there is no baking"
 PREVIEWS = "previews are not rendered"
@@ -22,6 +23,9 @@ REPLACED = {
     "CYCLES_RENDER_PT_sampling_render_denoise": "KOMOREBI_RENDER_PT_sampling_render_denoise",
     "CYCLES_RENDER_PT_sampling_advanced": "KOMOREBI_RENDER_PT_sampling_advanced",
     "CYCLES_RENDER_PT_sampling_advanced_sample_subset": "KOMOREBI_RENDER_PT_sampling_advanced",
+    "CYCLES_RENDER_PT_light_paths": "KOMOREBI_RENDER_PT_light_paths",
+    "CYCLES_RENDER_PT_light_paths_max_bounces": "KOMOREBI_RENDER_PT_light_paths_max_bounces",
+    "CYCLES_RENDER_PT_light_paths_clamping": "KOMOREBI_RENDER_PT_light_paths_clamping",
     "CYCLES_RENDER_PT_curves": "KOMOREBI_RENDER_PT_curves",
     "CYCLES_RENDER_PT_simplify": "KOMOREBI_RENDER_PT_simplify",
     "CYCLES_RENDER_PT_simplify_viewport": "KOMOREBI_RENDER_PT_simplify_viewport",
@@ -70,19 +74,16 @@ ADOPTED = {
 LEFT_OUT = {
     "CYCLES_PT_sampling_presets": "presets of Cycles' settings",
     "CYCLES_PT_viewport_sampling_presets": VIEWPORT,
-    "CYCLES_PT_integrator_presets": BOUNCES,
+    "CYCLES_PT_integrator_presets": "presets of Cycles' settings",
     "CYCLES_PT_performance_presets": "presets of Cycles' settings",
     "CYCLES_RENDER_PT_sampling_viewport": VIEWPORT,
     "CYCLES_RENDER_PT_sampling_viewport_denoise": VIEWPORT,
-    "CYCLES_RENDER_PT_sampling_path_guiding": BOUNCES,
-    "CYCLES_RENDER_PT_sampling_path_guiding_debug": BOUNCES,
+    "CYCLES_RENDER_PT_sampling_path_guiding": GUIDING,
+    "CYCLES_RENDER_PT_sampling_path_guiding_debug": GUIDING,
     "CYCLES_RENDER_PT_sampling_lights": LAMPS,
-    "CYCLES_RENDER_PT_light_paths": BOUNCES,
-    "CYCLES_RENDER_PT_light_paths_max_bounces": BOUNCES,
-    "CYCLES_RENDER_PT_light_paths_clamping": BOUNCES,
-    "CYCLES_RENDER_PT_light_paths_caustics": BOUNCES,
+    "CYCLES_RENDER_PT_light_paths_caustics": "all surfaces are matt: there are no caustics",
     "CYCLES_RENDER_PT_light_paths_fast_gi": (
-        BOUNCES + "; its AO distance is in KOMOREBI_WORLD_PT_ambient_occlusion"
+        FAST_GI + "; its AO distance is in KOMOREBI_WORLD_PT_ambient_occlusion"
     ),
     "CYCLES_RENDER_PT_volumes": VOLUMES,
     "CYCLES_RENDER_PT_subdivision": "adaptive subdivision is not rendered: Blender subdivides",
@@ -97,8 +98,8 @@ LEFT_OUT = {
     "CYCLES_RENDER_PT_performance_texture_cache": "there is no cache of textures",
     "CYCLES_RENDER_PT_passes_lightgroups": LIGHT_GROUPS,
     "CYCLES_CAMERA_PT_lens_custom_parameters": "cameras by OSL shaders are not rendered",
-    "CYCLES_OBJECT_PT_shading_gi_approximation": BOUNCES,
-    "CYCLES_OBJECT_PT_shading_caustics": BOUNCES,
+    "CYCLES_OBJECT_PT_shading_gi_approximation": FAST_GI,
+    "CYCLES_OBJECT_PT_shading_caustics": "all surfaces are matt: there are no caustics",
     "CYCLES_OBJECT_PT_lightgroup": LIGHT_GROUPS,
     "CYCLES_OBJECT_PT_visibility_culling": "what is far or outside of the view is rendered too",
     "CYCLES_OBJECT_PT_light_linking": LAMPS,

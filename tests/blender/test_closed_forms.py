@@ -22,7 +22,7 @@ def pictures(folder, name, samples=32, **properties):
     scene.render.engine = "KOMOREBI"
     settings = scene.komorebi
     settings.method, settings.pixel_filter = "AMBIENT_OCCLUSION", "BOX"
-    settings.samples, settings.ao_distance = samples, 0.0
+    settings.samples, settings.ao_distance, settings.bounces = samples, 0.0, 0
     for key, value in properties.items():
         setattr(settings, key, value)
     made = []
@@ -141,6 +141,15 @@ def test_furnace_hides_a_white_body(folder):
     for strategy in ("PRODUCT", "MIS", "ENVIRONMENT"):
         made = pictures(folder, "furnace", environment_sampling=strategy, **white)
         agree(made, 2.5, np.ones(made.shape[1:], bool), 1e-4)
+
+
+def test_bounces_in_a_cavity_are_a_geometric_series(folder):
+    """Each sends back ρ of what it gets, of which s leaves by the opening: ρ s Σ (ρ (1 − s))^i."""
+    for bounces in (0, 1, 2, 4, 8):
+        made = pictures(folder, "cavity", samples=64, method="WORLD_LIGHT", bounces=bounces)
+        albedo, open_share = 0.8, bpy.context.scene["open_share"]
+        series = sum((albedo * (1.0 - open_share)) ** i for i in range(bounces + 1))
+        agree(made, albedo * open_share * series, np.ones(made.shape[1:], bool), 2e-4)
 
 
 def test_no_light_enters_a_closed_room(folder):

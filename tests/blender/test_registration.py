@@ -10,7 +10,8 @@ DEFAULTS = {
     "time_limit": 0.0, "use_denoising": False,
     "seed": 0, "use_animated_seed": False, "ao_distance": 0.0, "ao_sampling": "COSINE",
     "environment_sampling": "PRODUCT", "pixel_filter": "BLACKMAN_HARRIS", "filter_width": 1.5,
-    "use_progressive": True,
+    "use_progressive": True, "bounces": 2, "ao_indirect_bounces": 0, "sample_clamp_direct": 0.0,
+    "sample_clamp_indirect": 10.0,
 }  # fmt: skip
 ITEMS = {
     "method": ["AMBIENT_OCCLUSION", "WORLD_LIGHT"],

@@ -37,6 +37,8 @@ class Job:
     frame: int | None = None
     camera: str | None = None
     stereo: str | None = None
+    bounces: int = 0
+    materials: bool = False
 
 
 @dataclass(frozen=True)

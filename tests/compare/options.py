@@ -45,6 +45,13 @@ def parser() -> argparse.ArgumentParser:
         choices=("plain", "spherical"),
         help="render both eyes of Stereo 3D side by side, with or without spherical stereo",
     )
+    made.add_argument(
+        "--bounces", type=int, default=0, help="how often light goes from surface to surface"
+    )
+    made.add_argument(
+        "--materials", action="store_true",
+        help="with --mode world: the scene's own materials and world, made matt",
+    )  # fmt: skip
     made.add_argument("--flat", action="store_true", help="shade Cycles with the geometric normal")
     made.add_argument(
         "--world-image", type=Path, help="light world mode with this equirectangular picture"
@@ -78,6 +85,10 @@ def read(words: list[str]) -> argparse.Namespace:
         made.error(f"there is no folder {options.all}")
     if options.world_image is not None and not options.world_image.is_file():
         made.error(f"there is no file {options.world_image}")
+    if options.materials and options.mode != "world":
+        made.error("--materials goes with --mode world")
+    if options.bounces < 0:
+        made.error("--bounces must be at least 0")
     if options.samples < 1 or options.seeds < 2 or options.size < 4:
         made.error("--samples must be at least 1, --seeds at least 2 and --size at least 4")
     if options.seeds < 8:
@@ -107,6 +118,8 @@ def jobs(options: argparse.Namespace, scene: Path, mode: str) -> tuple[Job, Job]
         frame=options.frame,
         camera=options.camera,
         stereo=options.stereo,
+        bounces=options.bounces,
+        materials=options.materials,
     )
     seeds = [seed + SECOND_SEED for seed in first.seeds]
     return first, Job(**{**vars(first), "engine": options.second, "seeds": seeds})
@@ -118,4 +131,4 @@ def folder(options: argparse.Namespace, scene: Path, mode: str) -> Path:
         return Path(options.out).resolve()
     base = Path(options.out).resolve() if options.out is not None else PROJECT / "build" / "compare"
     stem = "".join(c if c.isalnum() or c in "._-" else "_" for c in scene.stem)
-    return base / f"{stem}-{mode}"
+    return base / f"{stem}-{mode}{'-materials' if options.materials else ''}"

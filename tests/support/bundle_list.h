@@ -18,9 +18,10 @@ class BundleList {
     self_primitive_.push_back(ray.self_primitive);
     first_ray_.push_back(first_ray_.back());
   }
-  void add_ray(const Vec3& direction, float t_max) {
+  void add_ray(const Vec3& direction, float t_max, std::uint32_t path_key = 0) {
     for (int axis = 0; axis < 3; ++axis) direction_[axis].push_back(direction[axis]);
     t_max_.push_back(t_max);
+    path_key_.push_back(path_key);
     ++first_ray_.back();
   }
 
@@ -35,13 +36,14 @@ class BundleList {
     b.direction_x = direction_[0].data(), b.direction_y = direction_[1].data();
     b.direction_z = direction_[2].data();
     b.t_max = t_max_.data();
+    b.path_key = path_key_.data();
     return b;
   }
 
  private:
   std::uint32_t mask_;
   std::vector<float> origin_[3], time_, direction_[3], t_max_;
-  std::vector<std::uint32_t> self_instance_, self_primitive_, first_ray_{0};
+  std::vector<std::uint32_t> self_instance_, self_primitive_, path_key_, first_ray_{0};
 };
 
 }  // namespace komorebi::testing

@@ -21,6 +21,7 @@ class RayList {
     mask_.push_back(ray.mask);
     self_instance_.push_back(ray.self_instance);
     self_primitive_.push_back(ray.self_primitive);
+    path_key_.push_back(ray.path_key);
   }
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(t_min_.size()); }
@@ -40,13 +41,14 @@ class RayList {
                    mask_.data() + first,
                    self_instance_.data() + first,
                    self_primitive_.data() + first,
-                   count};
+                   count,
+                   path_key_.data() + first};
   }
   RaySpan span() const { return span(0, size()); }
 
  private:
   std::vector<float> origin_[3], direction_[3], t_min_, t_max_, time_;
-  std::vector<std::uint32_t> mask_, self_instance_, self_primitive_;
+  std::vector<std::uint32_t> mask_, self_instance_, self_primitive_, path_key_;
 };
 
 }  // namespace komorebi::testing

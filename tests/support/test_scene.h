@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -40,6 +41,12 @@ class TestScene {
     instances_.push_back(instance);
   }
 
+  /// Hits on these instances count if the filter says so.
+  void set_filter(const HitFilter& filter, const std::function<bool(std::uint32_t)>& is_filtered) {
+    filter_ = filter;
+    for (std::uint32_t i = 0; i < instances_.size(); ++i) instances_[i].filtered = is_filtered(i);
+  }
+
   void commit(Builder builder = Builder::kLinear) {
     std::vector<Aabb> boxes;
     for (const InstanceView& instance : instances_) boxes.push_back(instance.world_bounds);
@@ -65,6 +72,7 @@ class TestScene {
     scene.instance_count = static_cast<std::uint32_t>(instances_.size());
     scene.tree = tree_.view();
     scene.leaf2instance = tree_.leaf2instance.data();
+    scene.filter = filter_;
     return scene;
   }
 
@@ -85,6 +93,7 @@ class TestScene {
   std::vector<InstanceView> instances_;
   std::vector<MeshView> meshes_;
   InstanceTree tree_;
+  HitFilter filter_;
 };
 
 }  // namespace komorebi::testing

@@ -35,7 +35,8 @@ def export_scene(
     # A view layer without its sky has no world at all, neither seen nor as a light.
     world = depsgraph.scene.world if depsgraph.view_layer.use_sky else None
     warn_world(engine, world, value_columns(depsgraph.view_layer))
-    exported_world = export_world(engine, world)
+    exported_world = export_world(engine, world, depsgraph.scene.frame_current)
+    exported_world.resolution = depsgraph.scene.komorebi.world_resolution
     shutter = export_shutter(depsgraph.scene, depsgraph.view_layer, sources)
     unchanged = unchanged or Unchanged()
     with nullcontext() if shutter is None else shutter.at_middle(engine):
@@ -45,6 +46,7 @@ def export_scene(
         data = SceneData(
             cameras={view: camera.data for view, camera in zip(views, cameras, strict=True)},
             world=exported_world,
+            texture_limit=depsgraph.scene.komorebi.texture_limit << 20,
         )
         deforming = DeformingShapes(engine, depsgraph, shutter)
         motion = None if shutter is None else InstanceMotion(shutter, deforming)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from array import array
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
 
 from .. import compat
-from ..scene_data import CurveData, FloatArray, IntArray
+from ..scene_data import Attribute, CurveData, FloatArray, IntArray
+from .attributes import UV
 
 NOT_SHOWN_IN = {"EDIT", "PARTICLE_EDIT"}  # modes of the emitter
 
@@ -27,10 +29,14 @@ def hair_systems(obj: Any) -> list[Any]:
     return systems
 
 
-def export_hair(obj: Any, name: str, scene: Any, uvs: bool, stride: int = 1) -> CurveData | None:
+def export_hair(
+    obj: Any, name: str, scene: Any, uvs: bool, attributes: Collection[str] = (), stride: int = 1
+) -> CurveData | None:
     """All strands of an emitter in its own space, or every `stride`-th of them, with `uvs` also its
-    UVs where they grow; None when it has none."""
+    UVs where they grow, and of `attributes` those that are its UV maps; None when it has none."""
     parts, slots, roots = [], [], []
+    maps = _uv_maps(obj.data, attributes)
+    by_map: dict[str, list[FloatArray]] = {name: [] for name in maps}
     for modifier in hair_systems(obj):
         system = modifier.particle_system
         strands = _strands(system)[::stride]
@@ -39,7 +45,9 @@ def export_hair(obj: Any, name: str, scene: Any, uvs: bool, stride: int = 1) -> 
         parts.append(_export_system(obj, system, strands))
         slots.append(np.full(len(strands), max(system.settings.material - 1, 0), np.int32))
         if uvs and len(obj.data.uv_layers):
-            roots.append(_uvs(obj.data, modifier, strands))
+            roots.append(_uvs(modifier, strands, _render_layer(obj.data)))
+        for name_of_map, layer in maps.items():
+            by_map[name_of_map].append(_uvs(modifier, strands, layer))
     if not parts:
         return None
     materials = np.concatenate(slots)
@@ -56,7 +64,20 @@ def export_hair(obj: Any, name: str, scene: Any, uvs: bool, stride: int = 1) -> 
         subdivisions=subdivisions,
         curve_materials=materials if materials.any() else None,
         curve_uvs=np.concatenate(roots) if roots else None,
+        attributes={n: Attribute("CURVE", np.concatenate(rows)) for n, rows in by_map.items()},
     )
+
+
+def _render_layer(mesh: Any) -> int:
+    return next((i for i, uv in enumerate(mesh.uv_layers) if uv.active_render), 0)
+
+
+def _uv_maps(mesh: Any, names: Collection[str]) -> dict[str, int]:
+    """Which of the names are UV maps, and their numbers."""
+    maps = {uv.name: i for i, uv in enumerate(mesh.uv_layers) if uv.name in names}
+    if UV in names and len(mesh.uv_layers):
+        maps[UV] = _render_layer(mesh)
+    return dict(sorted(maps.items()))
 
 
 def _strands(system: Any) -> range:
@@ -66,9 +87,8 @@ def _strands(system: Any) -> range:
     return range(first, parents + children)
 
 
-def _uvs(mesh: Any, modifier: Any, strands: range) -> FloatArray:
+def _uvs(modifier: Any, strands: range, layer: int) -> FloatArray:
     """The emitter's UVs where each strand grows [strands, 2]."""
-    layer = next((i for i, uv in enumerate(mesh.uv_layers) if uv.active_render), 0)
     system = modifier.particle_system
     particles, uv_on_emitter = system.particles, system.uv_on_emitter
     numbers = array("f")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -61,12 +61,13 @@ class _Exporter:
         self._depsgraph = depsgraph
         self._data = data
         self._object2index: dict[int, int] = {}
-        self._shapes = ShapeExporter(engine, depsgraph, data.meshes, wanted, unchanged, deforming)
         self._motion = motion
         self._visibility = Visibility(depsgraph)
         self._materials = MaterialExporter(
             engine, depsgraph.scene, depsgraph.view_layer, data.materials
         )
+        wanted = replace(wanted, attributes_of=self._materials.attributes_of)
+        self._shapes = ShapeExporter(engine, depsgraph, data.meshes, wanted, unchanged, deforming)
         self._entries: list[_Entry] = []
         # Of each instance that is taken, in the order of the walk:
         self._entry = array("I")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..passes import value_columns
-from ..scene_data import MaterialData, Materials, ProgramData
+from ..scene_data import MaterialData, Materials, ProgramData, SurfaceData
 from .aovs import AovReader
 from .names import name_of
 from .surface import export_surface, look_of
@@ -20,9 +20,11 @@ class MaterialExporter:
     def __init__(self, engine: Any, scene: Any, view_layer: Any, materials: Materials) -> None:
         self._engine = engine
         self._look = look_of(scene)
+        self._frame = scene.frame_current
         self._override = view_layer.material_override
         self._materials = materials
         self._aovs = AovReader(engine, value_columns(view_layer))
+        self._attributes: list[frozenset[str]] = []  # of each material
         self.asks_random = False  # whether any material so far has another look by instance
         self._index: dict[int, int] = {}  # of materials by address; 0: no material
         self._slots: dict[tuple[int, ...], int] = {}
@@ -34,6 +36,11 @@ class MaterialExporter:
         if known == len(self._materials.slots):
             self._materials.slots.append(slots)
         return known
+
+    def attributes_of(self, obj: Any) -> frozenset[str]:
+        """The names of attributes that an object's materials ask for."""
+        indices = self._materials.slots[self.slots_of(obj)]
+        return frozenset[str]().union(*(self._attributes[i] for i in indices))
 
     def _surfaces(self, obj: Any) -> list[Any]:
         if self._override is not None:
@@ -53,7 +60,8 @@ class MaterialExporter:
         if index is None:
             index = self._index[pointer] = len(self._materials.materials)
             values = self._aovs.values_of(material)
-            surface = export_surface(self._engine, material, self._look)
+            surface = export_surface(self._engine, material, self._look, self._frame)
+            self._attributes.append(_attributes(surface))
             self.asks_random |= any(_asks_random(p) for p in surface.programs())
             self._materials.materials.append(
                 MaterialData(NO_MATERIAL, 0, values, surface) if material is None
@@ -64,3 +72,15 @@ class MaterialExporter:
 
 def _asks_random(program: ProgramData) -> bool:
     return any(op.op == "input" and op.name == "object_random" for op in program.ops)
+
+
+def _attributes(surface: SurfaceData) -> frozenset[str]:
+    """What of a mesh the programs read; steps ("dx:", "dy:") follow from the same arrays. The
+    Tangent of Geometry nodes lies around generated coordinates."""
+    names = set()
+    for op in (op for program in surface.programs() for op in program.ops):
+        if op.op == "attribute":
+            names.add(op.name.removeprefix("dx:").removeprefix("dy:"))
+        elif op.op == "input" and op.name == "tangent":
+            names.add("generated")
+    return frozenset(names)

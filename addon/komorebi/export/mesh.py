@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import compat
-from ..mesh_cache import digest
-from ..scene_data import FloatArray, IntArray, MeshData, MeshKey
+from ..mesh_cache import attribute_digest, digest
+from ..scene_data import Attribute, FloatArray, IntArray, MeshData, MeshKey
+from .attributes import Found, read_mesh_attributes, read_tangents, uv_map_of_tangents
 
 MAX_NATIVE_CORNERS = 4  # the core triangulates triangles and quads by Blender's own rule
 
@@ -21,7 +23,9 @@ class MeshReader:
     and is not read when the mesh is known.
     """
 
-    def __init__(self, mesh: Any, name: str, with_uvs: bool = False) -> None:
+    def __init__(
+        self, mesh: Any, name: str, with_uvs: bool = False, attributes: Collection[str] = ()
+    ) -> None:
         self._mesh = mesh
         self._name = name
         self._positions = compat.positions(mesh)
@@ -31,6 +35,9 @@ class MeshReader:
         self._smooth = compat.smooth_faces(mesh)
         self._materials = compat.face_materials(mesh)
         self._uvs = compat.corner_uvs(mesh) if with_uvs else None
+        self._found = read_mesh_attributes(mesh, attributes)
+        self._tangents = {name for name in attributes if uv_map_of_tangents(name) is not None}
+        self._along = Found()  # the tangents, when `data` has read them
         self._normals: tuple[FloatArray | None, FloatArray | None] | None = None
 
     def key(self, core: Any) -> MeshKey:
@@ -40,8 +47,24 @@ class MeshReader:
             sources = self._read_normals()
         return MeshKey(
             b"mesh" + digest(core, (self._positions, self._verts, self._offsets)),
-            digest(core, (self._smooth, self._materials, self._uvs, *sources)),
+            digest(core, (self._smooth, self._materials, self._uvs, *sources))
+            + self._attribute_digest(core),
         )
+
+    def _attribute_digest(self, core: Any) -> bytes:
+        found = attribute_digest(core, self._found.attributes)
+        if not self._tangents:
+            return found
+        # Tangents follow from UV maps and the rest of the key.
+        maps = {uv_map_of_tangents(name) or "" for name in self._tangents}
+        sources = read_mesh_attributes(self._mesh, maps).attributes
+        names = repr(sorted(self._tangents)).encode()
+        return found + names + attribute_digest(core, sources)
+
+    @property
+    def problems(self) -> list[str]:
+        """Sentences on attributes that cannot be read; all of them when `data` is there."""
+        return self._found.problems + self._along.problems
 
     def data(self) -> MeshData:
         order, verts = self._order, self._verts
@@ -57,6 +80,12 @@ class MeshReader:
                 tri2corner = new_corner[tri2corner]
             by_corner = None if by_corner is None else by_corner[order]
             uvs = None if uvs is None else uvs[order]
+        self._along = read_tangents(self._mesh, self._tangents)
+        attributes = {
+            name: Attribute(a.domain, a.values[order])
+            if order is not None and a.domain == "CORNER" else a
+            for name, a in (self._found.attributes | self._along.attributes).items()
+        }  # fmt: skip
         flat = by_corner is None and by_vertex is None
         return MeshData(
             name=self._name,
@@ -70,6 +99,7 @@ class MeshReader:
             smooth_faces=None if flat or self._smooth.all() else self._smooth,
             face_materials=self._materials,
             corner_uvs=uvs,
+            attributes=attributes,
         )
 
     def velocity(self) -> FloatArray | None:

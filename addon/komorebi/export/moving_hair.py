@@ -39,4 +39,4 @@ class HairReader:
         return self._read(obj, 1)
 
     def _read(self, obj: Any, stride: int) -> CurveData | None:
-        return export_hair(obj, self._rest.name, self._scene, False, stride)
+        return export_hair(obj, self._rest.name, self._scene, False, stride=stride)

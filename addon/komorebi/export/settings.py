@@ -24,6 +24,13 @@ def layer_samples(scene: Any, view_layer: Any) -> int:
     return min(own, of_scene) if rule == "BOUNDED" else own
 
 
+def bounces(settings: Any) -> int:
+    """How often light goes from surface to surface: each method has its own."""
+    if settings.method == "AMBIENT_OCCLUSION":
+        return int(settings.ao_indirect_bounces)
+    return int(settings.bounces)
+
+
 def export_settings(
     scene: Any, view_layer: Any, passes: list[Pass], region: tuple[int, int, int, int]
 ) -> dict[str, Any]:
@@ -48,6 +55,9 @@ def export_settings(
         "ao_distance": settings.ao_distance,
         "ao_sampling": settings.ao_sampling,
         "clay_color": tuple(settings.clay_color),
+        "bounces": bounces(settings),
+        "sample_clamp_direct": settings.sample_clamp_direct,
+        "sample_clamp_indirect": settings.sample_clamp_indirect,
         "environment_sampling": settings.environment_sampling,
         "pixel_filter": settings.pixel_filter,
         "filter_width": settings.filter_width,

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from .. import compat, core, mesh_cache
+from .. import compat, core, mesh_cache, reporting
 from ..errors import RenderCancelled
 from ..scene_data import AnyMesh, CurveData, PointData
 from ..unchanged import Unchanged
+from .attributes import read_round_attributes
 from .curves import export_curves
 from .deform import DeformingShapes
 from .hair import export_hair, hair_systems
@@ -37,14 +38,15 @@ class ShapeExporter:
         self._wanted = wanted
         self._surfaces = depsgraph.view_layer.use_solid
         self._strands = depsgraph.view_layer.use_strand
-        self._by_data: dict[int, int] = {}
-        self._by_emitter: dict[int, int] = {}
+        self._by_data: dict[tuple[int, frozenset[str]], int] = {}
+        self._by_emitter: dict[tuple[int, frozenset[str]], int] = {}
 
     def surface_of(self, obj: Any) -> int:
         """The index of an evaluated object's own surface, of type TYPES, or NONE."""
         if not self._is_shown(obj.type):
             return NONE
-        key = obj.data.as_pointer()  # unique while the depsgraph holds the data
+        names = self._wanted.attributes_of(obj)
+        key = (obj.data.as_pointer(), names)  # unique while the depsgraph holds the data
         index = self._by_data.get(key)
         if index is None:
             index = self._by_data[key] = self._add(self._export(obj))
@@ -54,7 +56,7 @@ class ShapeExporter:
         """The index of the hair that grows on an evaluated object, or NONE."""
         if not self._strands or obj.type != "MESH" or not hair_systems(obj):
             return NONE
-        key = obj.original.as_pointer()
+        key = (obj.original.as_pointer(), self._wanted.attributes_of(obj))
         index = self._by_emitter.get(key)
         if index is None:
             index = self._by_emitter[key] = self._add(self._read_hair(obj))
@@ -68,7 +70,10 @@ class ShapeExporter:
             raise RenderCancelled
         if self._deforming.may_deform(obj):  # known only when all of its times are
             return self._read(obj)
-        address = (obj.data.as_pointer(), obj.original.as_pointer(), self._wanted.uvs)
+        address = (
+            obj.data.as_pointer(), obj.original.as_pointer(), self._wanted.uvs,
+            self._wanted.attributes_of(obj),
+        )  # fmt: skip
         key = self._unchanged.key(address)
         known = None if key is None else mesh_cache.find(name_of(obj), key)
         if known is not None:
@@ -81,26 +86,49 @@ class ShapeExporter:
     def _read(self, obj: Any) -> AnyMesh | None:
         if obj.type == "CURVES":
             curves = export_curves(obj.data, name_of(obj), self._scene, self._wanted.uvs)
+            self._add_attributes(obj, curves)
             return self._followed(obj, curves, self._read_curves)
         if obj.type == "POINTCLOUD":
-            return self._followed(obj, _read_points(obj), _read_points)
+            points = _read_points(obj)
+            self._add_attributes(obj, points)
+            return self._followed(obj, points, _read_points)
         with compat.mesh_of(obj) as mesh:
             return self._read_mesh(obj, mesh) if len(mesh.polygons) else None
 
     def _read_mesh(self, obj: Any, mesh: Any) -> AnyMesh:
-        reader = MeshReader(mesh, name_of(obj), self._wanted.uvs)
+        names = self._wanted.attributes_of(obj)
+        reader = MeshReader(mesh, name_of(obj), self._wanted.uvs, names)
         if self._deforming.may_deform(obj):
-            return self._deforming.follow(len(self._meshes), obj, reader)
+            followed = self._deforming.follow(len(self._meshes), obj, reader)
+            self._warn(obj, reader.problems)
+            return followed
         key = reader.key(self._core)
         known = mesh_cache.find(name_of(obj), key)
         if known is not None:
             return known
         data = reader.data()
         data.key = key
+        self._warn(obj, reader.problems)
         return data
 
+    def _add_attributes(self, obj: Any, data: CurveData | PointData | None) -> None:
+        names = self._wanted.attributes_of(obj)
+        if data is None or not names:
+            return
+        found = read_round_attributes(obj.data, names)
+        data.attributes = found.attributes
+        self._warn(obj, found.problems)
+
+    def _warn(self, obj: Any, problems: list[str]) -> None:
+        for problem in problems:
+            reporting.warn(
+                self._engine, f'object "{name_of(obj)}": {problem}: materials have 0 in its place'
+            )
+
     def _read_hair(self, obj: Any) -> AnyMesh | None:
-        hair = export_hair(obj, name_of(obj), self._scene, self._wanted.uvs)
+        hair = export_hair(
+            obj, name_of(obj), self._scene, self._wanted.uvs, self._wanted.attributes_of(obj)
+        )
         if hair is not None and self._deforming.follow_hair(len(self._meshes), obj, hair):
             return hair
         return self._with_key(hair)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
-from .. import compat
+from .. import compat, reporting
 from ..scene_data import Lobe, ProgramData, SurfaceData, SurfacePrograms, Value
 from . import nodes
 from .names import name_of
@@ -15,6 +15,7 @@ from .shader.values import Builder
 
 MOST_LOBES = 4  # of a surface; each has a normal of its own
 WHITE: Value = (1.0, 1.0, 1.0)
+WHITE_CLAY = (1.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,35 +26,46 @@ class Look:
     keeps_bump: bool = True
     skips_glass: bool = True
     has_light: bool = True  # False for ambient occlusion, which knows no colour and no lamps
+    later: Look | None = None  # how surfaces look to bounces; None: the same
 
 
 def look_of(scene: Any) -> Look:
     """What the settings of a scene say."""
     settings = scene.komorebi
-    is_light = settings.method == "WORLD_LIGHT"
-    color = tuple(settings.clay_color) if is_light else (1.0, 1.0, 1.0)
-    if settings.surface == "MATERIAL":
-        return Look(None, has_light=is_light)
-    return Look(color, settings.clay_bump, settings.clay_glass == "SKIP", is_light)
+    look = Look(None)
+    if settings.surface == "CLAY":
+        look = Look(tuple(settings.clay_color), settings.clay_bump, settings.clay_glass == "SKIP")
+    if settings.method == "WORLD_LIGHT":
+        return look
+    # What is seen is white; what its light comes from is not.
+    later = look if settings.ao_indirect_bounces > 0 else None
+    return replace(look, clay=look.clay and WHITE_CLAY, has_light=False, later=later)
 
 
-def export_surface(engine: Any, material: Any | None, look: Look) -> SurfaceData:
+def export_surface(engine: Any, material: Any | None, look: Look, frame: int = 1) -> SurfaceData:
     """The programs of a material, and what of it is rendered as something else."""
     if material is None:
-        return SurfaceData(_even((0.8, 0.8, 0.8), look))
-    if look.clay is not None and material.komorebi.exclude_from_clay:
-        look = Look(None, has_light=look.has_light)
+        return _plain((0.8, 0.8, 0.8), look)
+    if material.komorebi.exclude_from_clay:
+        look = _without_clay(look)
     tree = compat.shader_nodes(material)
     if tree is None:
         color = material.diffuse_color
-        return SurfaceData(_even((color[0], color[1], color[2]), look))
+        return _plain((color[0], color[1], color[2]), look)
     output = nodes.material_output(tree)
     if output is None:
-        return SurfaceData(_even((0.0, 0.0, 0.0), look))
+        return _plain((0.0, 0.0, 0.0), look)
     owner = f'material "{name_of(material)}"'
-    compilers = {kind: Compiler(engine, owner, Ray(kind)) for kind in ("CAMERA", "DIFFUSE")}
-    camera, bounce = (_surface(c, output, look) for c in compilers.values())
-    shadow = Compiler(engine, owner, Ray("SHADOW"))
+    compilers = {
+        kind: Compiler(engine, owner, Ray(kind), frame=frame) for kind in ("CAMERA", "DIFFUSE")
+    }
+    camera = _surface(compilers["CAMERA"], output, look)
+    bounce = _surface(compilers["DIFFUSE"], output, look.later or look)
+    if camera.program.outputs[:3] != BLACK:
+        reporting.warn(
+            engine, f"{owner} shines, but its light on other surfaces is not rendered yet"
+        )
+    shadow = Compiler(engine, owner, Ray("SHADOW"), frame=frame)
     clear = _transparency(shadow, _closures(shadow, output), look)
     return SurfaceData(
         camera,
@@ -63,8 +75,21 @@ def export_surface(engine: Any, material: Any | None, look: Look) -> SurfaceData
     )
 
 
+def _without_clay(look: Look) -> Look:
+    later = None if look.later is None else _without_clay(look.later)
+    return Look(None, has_light=look.has_light, later=later)
+
+
+def _plain(color: Value, look: Look) -> SurfaceData:
+    """A surface of one colour."""
+    later = None if look.later is None else _even(color, look.later)
+    return SurfaceData(_even(color, look), later)
+
+
 def _even(color: Value, look: Look) -> SurfacePrograms:
     shown = color if look.clay is None else look.clay
+    if not look.has_light:
+        shown = WHITE
     outputs = (*BLACK, *BLACK, 0.0, *shown)
     return SurfacePrograms(ProgramData("surface", [], outputs), (Lobe(False, False),))
 

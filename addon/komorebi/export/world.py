@@ -19,7 +19,7 @@ from .world_map import read_map
 BLACK = ProgramData("black", [], (0.0, 0.0, 0.0))
 
 
-def export_world(engine: Any, world: Any | None) -> WorldData:
+def export_world(engine: Any, world: Any | None, frame: int = 1) -> WorldData:
     """What a ray that hits nothing sees; no world at all is black."""
     if world is None:
         return WorldData()
@@ -29,7 +29,7 @@ def export_world(engine: Any, world: Any | None) -> WorldData:
         color = tuple(float(c) for c in world.color[:3])
         data = WorldData(color=color)  # type: ignore[arg-type]
         return _hidden(data, ProgramData("world", [], color), seen, lights)
-    return _WorldReader(engine, world, tree).read(seen, lights)
+    return _WorldReader(engine, world, tree, frame).read(seen, lights)
 
 
 def _hidden(data: WorldData, camera: ProgramData | None, seen: bool, lights: bool) -> WorldData:
@@ -41,7 +41,8 @@ def _hidden(data: WorldData, camera: ProgramData | None, seen: bool, lights: boo
 
 
 class _WorldReader:
-    def __init__(self, engine: Any, world: Any, tree: Any) -> None:
+    def __init__(self, engine: Any, world: Any, tree: Any, frame: int) -> None:
+        self._frame = frame
         self._engine = engine
         self._owner = f'world "{name_of(world)}"'
         self._tree = tree
@@ -70,7 +71,7 @@ class _WorldReader:
         return _hidden(data, data.camera_program, seen, lights)
 
     def _compiler(self, kind: str) -> Compiler:
-        return Compiler(self._engine, self._owner, Ray(kind), is_world=True)
+        return Compiler(self._engine, self._owner, Ray(kind), is_world=True, frame=self._frame)
 
     @staticmethod
     def _program(compiler: Compiler, surface: Any) -> ProgramData:

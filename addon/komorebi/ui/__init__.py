@@ -7,12 +7,34 @@ from __future__ import annotations
 
 import bpy
 
-from . import adopted, camera, light, material, menus, object, render, sampling, view_layer, world
+from . import (
+    adopted,
+    camera,
+    light,
+    light_paths,
+    material,
+    menus,
+    object,
+    render,
+    sampling,
+    view_layer,
+    world,
+)  # fmt: skip
 from .base import ENGINE_ID
 
 CLASSES = tuple(
     cls
-    for module in (sampling, render, view_layer, camera, light, object, world, material)
+    for module in (
+        sampling,
+        light_paths,
+        render,
+        view_layer,
+        camera,
+        light,
+        object,
+        world,
+        material,
+    )
     for cls in module.CLASSES
 )
 

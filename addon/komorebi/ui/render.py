@@ -156,6 +156,7 @@ class KOMOREBI_RENDER_PT_performance(KomorebiPanel, bpy.types.Panel):
         sub.enabled = render.threads_mode == "FIXED"
         sub.prop(render, "threads")
         column.prop(render, "use_persistent_data", text="Persistent Data")
+        column.prop(context.scene.komorebi, "texture_limit")
 
 
 class KOMOREBI_RENDER_PT_performance_compositor(KomorebiPanel, bpy.types.Panel):

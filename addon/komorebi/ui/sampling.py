@@ -79,6 +79,7 @@ class KOMOREBI_RENDER_PT_sampling_advanced(KomorebiPanel, bpy.types.Panel):
         sub = column.column()
         sub.active = settings.method == "WORLD_LIGHT"
         sub.prop(settings, "environment_sampling")
+        sub.prop(settings, "world_resolution")
         column.prop(settings, "use_progressive")
         of_cycles = cycles(context.scene)
         if of_cycles is not None and any(layer.samples for layer in context.scene.view_layers):
@@ -95,6 +96,7 @@ class KOMOREBI_RENDER_PT_ambient_occlusion(KomorebiPanel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         column = self.column()
         column.prop(context.scene.komorebi, "ao_distance")
+        column.prop(context.scene.komorebi, "ao_indirect_bounces")
         column.prop(context.scene.komorebi, "ao_sampling")
 
 

@@ -15,6 +15,7 @@ from ._komorebi import (
     Session,
     Settings,
     SurfaceProgram,
+    Texture,
     __version__,
     build_info,
     choose_builder,
@@ -23,6 +24,9 @@ from ._komorebi import (
     force_instruction_set,
     has_op,
     known_passes,
+    sky_numbers,
+    sky_sun,
+    sky_table,
 )
 
 __all__ = [
@@ -36,6 +40,7 @@ __all__ = [
     "Session",
     "Settings",
     "SurfaceProgram",
+    "Texture",
     "__version__",
     "build_info",
     "choose_builder",
@@ -44,4 +49,7 @@ __all__ = [
     "force_instruction_set",
     "has_op",
     "known_passes",
+    "sky_numbers",
+    "sky_sun",
+    "sky_table",
 ]

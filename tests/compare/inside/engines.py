@@ -44,15 +44,17 @@ def owen_scramble(cycles: Any) -> None:
     raise RuntimeError("this Cycles has no sampling pattern that a seed changes")
 
 
-def set_cycles(scene: Any, samples: int) -> None:
-    """Cycles on the CPU: zero bounces, box filter, and nothing that biases or stops early."""
+def set_cycles(scene: Any, samples: int, bounces: int, materials: bool) -> None:
+    """Cycles on the CPU: diffuse bounces alone, box filter, and nothing that biases or stops early."""
     if not hasattr(scene, "cycles"):
         raise RuntimeError(
             "this Blender has no Cycles (its add-on is not enabled): compare needs it"
         )
     scene.render.engine = "CYCLES"
     settle(scene.render, "use_persistent_data", True)  # its trees are the same for every seed
-    require(scene.cycles, device="CPU", samples=samples, max_bounces=0, pixel_filter_type="BOX")
+    require(
+        scene.cycles, device="CPU", samples=samples, max_bounces=bounces, pixel_filter_type="BOX"
+    )
     require(
         scene.cycles, use_adaptive_sampling=False, use_denoising=False, light_sampling_threshold=0.0
     )
@@ -63,11 +65,11 @@ def set_cycles(scene: Any, samples: int) -> None:
     take_samples(scene.cycles, samples, 0)
     settle_all(
         scene.cycles,
-        diffuse_bounces=0,
+        diffuse_bounces=bounces,
         glossy_bounces=0,
-        transmission_bounces=0,
+        transmission_bounces=bounces,  # what comes through translucent surfaces
         volume_bounces=0,
-        transparent_max_bounces=0,
+        transparent_max_bounces=1024 if materials else 0,
         feature_set="SUPPORTED",
         shading_system=False,
         film_exposure=1.0,
@@ -82,7 +84,7 @@ def set_cycles(scene: Any, samples: int) -> None:
     )
 
 
-def set_komorebi(scene: Any, samples: int, mode: str) -> None:
+def set_komorebi(scene: Any, samples: int, mode: str, bounces: int, materials: bool) -> None:
     """Komorebi with every property that the comparison relies on; raises KeyError where one is
     missing."""
     if not hasattr(scene, "komorebi"):
@@ -95,13 +97,16 @@ def set_komorebi(scene: Any, samples: int, mode: str) -> None:
         use_animated_seed=False,
         ao_distance=0.0,
         ao_sampling="COSINE",
-        clay_color=CLAY,
+        clay_color=(1.0, 1.0, 1.0) if mode == "ao" else CLAY,
+        bounces=bounces,
+        ao_indirect_bounces=bounces,
+        sample_clamp_direct=0.0,
+        sample_clamp_indirect=0.0,
     )
     require(scene.komorebi, environment_sampling="MIS", pixel_filter="BOX", use_progressive=True)
     settle_all(
         scene.komorebi,
-        surface="CLAY",
-        bounces=0,
+        surface="MATERIAL" if materials else "CLAY",
         use_adaptive_sampling=False,
         time_limit=0.0,
         use_denoising=False,

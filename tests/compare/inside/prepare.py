@@ -7,7 +7,7 @@ from typing import Any
 
 import bpy
 
-from compare.inside import camera, engines, objects, render_settings, world
+from compare.inside import camera, engines, materials, objects, render_settings, world
 
 # A shadow on a catcher is a ratio of two means, which has an error of its own at few samples.
 CATCHER_SAMPLES = 8
@@ -37,8 +37,13 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
     render_settings.set_output(scene)
     layer, more = render_settings.choose_view_layer(scene, job["view_layer"])
     notes += more + objects.lamps_off() + objects.objects_off()
-    layer.material_override = engines.clay(job["mode"], job["flat"])
-    notes += world.set_world(scene, job["mode"], job["world_image"])
+    if job["materials"]:
+        layer.material_override = None
+        notes += materials.make_matt()
+    else:
+        layer.material_override = engines.clay(job["mode"], job["flat"])
+    if not job["materials"] or job["world_image"]:
+        notes += world.set_world(scene, job["mode"], job["world_image"])
     if job["mode"] == "ao":
         objects.terminators_off()
         notes += objects.visible_alike()
@@ -54,7 +59,7 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
     if job["stereo"] is not None:
         camera.both_eyes(scene, job["stereo"] == "spherical")
     if job["engine"] == "CYCLES":
-        engines.set_cycles(scene, samples)
+        engines.set_cycles(scene, samples, job["bounces"], job["materials"])
     else:
-        engines.set_komorebi(scene, samples, job["mode"])
+        engines.set_komorebi(scene, samples, job["mode"], job["bounces"], job["materials"])
     return scene, layer, notes

@@ -8,6 +8,7 @@
 #include "bvh/traverse.h"
 #include "render/one_ray.h"
 #include "render/sky_guide.h"
+#include "support/lottery.h"
 #include "support/made_curves.h"
 #include "support/scenes.h"
 
@@ -57,7 +58,8 @@ Settings small_settings(Method method) {
 
 /// Things that every pass has something to tell of: a shadow catcher, a hole, objects without
 /// shadow or not to be seen, materials and UVs, and a camera that will be elsewhere.
-std::shared_ptr<Scene> telling_scene() {
+/// @param lottery  of what has the first material, all of it
+std::shared_ptr<Scene> telling_scene(const Lottery* lottery = nullptr) {
   Polygons ground = quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0});
   const Polygons ball = sphere(7, Vec3d(0), 1.0, true), cube = box(Vec3d(-0.5), Vec3d(0.5));
   auto scene = std::make_shared<Scene>();
@@ -103,12 +105,14 @@ std::shared_ptr<Scene> telling_scene() {
   camera.motion.poses = {at(0.1, 0, 0) * rest, rest, at(0, 0.3, 0.1) * rest};
   camera.shutter.still = true;
   scene->set_camera(camera);
+  if (lottery) scene->set_hit_filter(lottery->filter(), {1, 0});
   return committed(scene);
 }
 
 /// Camera, objects and shutter in motion: a fast turn, a mirrored and sheared pass through the
 /// picture, a ball that grows out of nothing, and what changes its shape.
-std::shared_ptr<Scene> moving_scene(Builder builder = Builder::kLinear) {
+std::shared_ptr<Scene> moving_scene(Builder builder = Builder::kLinear,
+                                    const Lottery* lottery = nullptr) {
   const auto ball = sphere(16, Vec3d(0), 0.8, true).mesh(builder);
   const auto cube = box(Vec3d(-0.5), Vec3d(0.5)).mesh(builder);
   CameraDesc camera = camera_at({5, -4, 3}, {0, 0, 0.8}, 150, 90);
@@ -169,6 +173,14 @@ std::shared_ptr<Scene> moving_scene(Builder builder = Builder::kLinear) {
   }
   SceneTables tables;
   tables.objects = {{1.0f, 101, 201, 0.3f, 1.2f}};
+  if (lottery) {
+    tables.materials = {{1.0f, 301}};
+    tables.value_count = 4;
+    tables.values = {0.5f, 0.25f, 2.0f, 1.0f};
+    tables.slot_begin = {0, 1};
+    tables.slots = {0};
+    scene->set_hit_filter(lottery->filter(), {1});
+  }
   scene->set_tables(std::move(tables));
   scene->set_world_environment(gradient_map(), 0.7, Mat3d(1.0));
   return committed(scene);
@@ -195,7 +207,8 @@ void expect_batches_as_one_ray(const std::shared_ptr<Scene>& scene, Settings set
   RenderContext context = make_context(*scene, settings_, filter.view());
   SkyGuide guide;
   guide.prepare(*scene, shared_pool(), Cancel(), context);
-  Film film(settings_.region, settings_, scene->max_radiance(), scene->has_catchers());
+  Film film(settings_.region, settings_, scene->max_radiance(), scene->has_catchers(),
+            scene->tables().max_value());
   for (const Rect& cell : cells_of(settings_.region)) {
     TileSums sums;
     film.reset(sums, cell.area());
@@ -257,6 +270,28 @@ TEST_P(Equality, ThroughBouncesThreadsTilesBuildersAndInstructionSetsDoNotShow) 
   force_instruction_set("");
   settings_.bounces = 3;
   EXPECT_NE(render(scene, settings_), expected);
+}
+
+TEST_P(Equality, BatchesAgreeWithOneRayThroughCutOuts) {
+  const Lottery lottery(0.6);
+  expect_batches_as_one_ray(telling_scene(&lottery), settings_);
+  expect_batches_as_one_ray(moving_scene(Builder::kLinear, &lottery), settings_);
+  EXPECT_GT(lottery.asked(), 10000u);
+}
+
+TEST_P(Equality, OfCutOutsThreadsTilesBuildersAndInstructionSetsDoNotShow) {
+  const Lottery lottery(0.6);
+  const auto scene = moving_scene(Builder::kLinear, &lottery);
+  const auto expected = render(scene, settings_);
+  EXPECT_NE(render(moving_scene(), settings_), expected);
+  settings_.threads = 1;
+  settings_.tile_size = 24;
+  EXPECT_EQ(render(moving_scene(Builder::kSah, &lottery), settings_), expected);
+  for (const std::string& name : built_instruction_sets()) {
+    force_instruction_set(name);
+    EXPECT_EQ(render(scene, settings_), expected) << name;
+  }
+  force_instruction_set("");
 }
 
 TEST_P(Equality, OfMotionThreadsTilesBuildersAndInstructionSetsDoNotShow) {

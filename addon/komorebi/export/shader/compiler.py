@@ -48,10 +48,13 @@ class Ray:
 class Compiler:
     """Compiles sockets of one tree for one kind of ray into one Builder."""
 
-    def __init__(self, engine: Any, owner: str, ray: Ray, *, is_world: bool = False) -> None:
+    def __init__(
+        self, engine: Any, owner: str, ray: Ray, *, is_world: bool = False, frame: int = 1
+    ) -> None:
         self.builder = Builder()
         self.ray = ray
         self.is_world = is_world
+        self.frame = frame  # of the scene, for sequences of pictures
         self.owner = owner  # how warnings begin: world "World"
         self.map_size = 0  # columns of the largest environment map
         # [3, 4] rows of the matrix into the camera's space (right, up, depth; a
@@ -60,6 +63,7 @@ class Compiler:
         # what is compiled for a point aside: "dx" or "dy", and how many such steps
         self.shift: tuple[str, Value] | None = None
         self.notes: set[str] = set()  # what is rendered as something simpler, by design
+        self.suns: list[Any] = []  # nodes_sky.SkySun: discs that a map of the world leaves out
         self._engine = engine
         self._groups: tuple[Any, ...] = ()  # group nodes that we are inside of, the outermost first
         self._done: dict[tuple[Any, ...], Outputs] = {}
