@@ -102,7 +102,7 @@ def bump_stage(thing):
 
 
 def test_bump():
-    for thing, outputs in ((plate, ("Generated", "UV", "Object")), (bowl, ("Object",))):
+    for thing, outputs in ((plate, ("Generated", "UV", "Object")), (bowl, ("Object", "Camera"))):
         stage = bump_stage(thing())
         for output in (*outputs, "Position"):
             for strength, distance, invert in ((1.0, 0.2, False), (0.4, 0.6, True)):

@@ -291,7 +291,11 @@ def _in_camera(compiler: Compiler, *, is_point: bool) -> Value:
     """Where the camera has the point; of a world the direction, or what lies at its end."""
     if compiler.is_world and compiler.camera_from_world is not None:
         return _by_camera(compiler, position(compiler), is_point, back=False)
-    return compiler.builder.input("camera")
+    place = compiler.builder.input("camera")
+    if compiler.shift is None or compiler.is_world or compiler.camera_from_world is None:
+        return place
+    step = _by_camera(compiler, _step(compiler), False, back=False)
+    return compiler.builder.add(place, step)
 
 
 @node("NORMAL")

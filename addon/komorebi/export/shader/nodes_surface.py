@@ -27,7 +27,8 @@ def _normal(compiler: Compiler, node: Any) -> Value | None:
     socket = _socket(node, "Normal")
     if socket is None or not compiler.is_linked(socket):
         return None
-    return compiler.value(socket)
+    normal = compiler.value(socket)
+    return None if normal == compiler.builder.input("normal") else normal
 
 
 def _one(node: Any, closures: Closures) -> Outputs:
