@@ -49,3 +49,22 @@ def _output(tree: Any, kind: str) -> Any | None:
         if node is not None and node.type == kind:
             return node
     return None
+
+
+def find_upstream(node: Any, types: set[str]) -> Any | None:
+    """The nearest node of one of `types` that feeds `node`, groups searched as well."""
+    seen: set[int] = set()
+    queue = [node]
+    while queue:
+        current = queue.pop(0)
+        pointer = current.as_pointer()
+        if pointer in seen:
+            continue
+        seen.add(pointer)
+        if current.type in types:
+            return current
+        if current.type == "GROUP" and current.node_tree:
+            queue.extend(n for n in current.node_tree.nodes if n.type == "GROUP_OUTPUT")
+        feeding = (source(socket) for socket in current.inputs)
+        queue.extend(socket.node for socket in feeding if socket is not None)
+    return None
