@@ -16,6 +16,7 @@ from .deform import DeformingShapes
 from .instance import export_instances
 from .motion import InstanceMotion
 from .shutter import Shutter, export_shutter
+from .surroundings import surroundings_of
 from .unsupported import warn_scene
 from .wanted import Wanted
 from .world import export_world
@@ -35,7 +36,7 @@ def export_scene(
     # A view layer without its sky has no world at all, neither seen nor as a light.
     world = depsgraph.scene.world if depsgraph.view_layer.use_sky else None
     warn_world(engine, world, value_columns(depsgraph.view_layer))
-    exported_world = export_world(engine, world, depsgraph.scene.frame_current)
+    exported_world = export_world(engine, world, surroundings_of(depsgraph.scene))
     exported_world.resolution = depsgraph.scene.komorebi.world_resolution
     shutter = export_shutter(depsgraph.scene, depsgraph.view_layer, sources)
     unchanged = unchanged or Unchanged()

@@ -9,6 +9,7 @@ from ..scene_data import MaterialData, Materials, ProgramData, SurfaceData
 from .aovs import AovReader
 from .names import name_of
 from .surface import export_surface, look_of
+from .surroundings import surroundings_of
 
 # What Cycles calls the surface of a face without material, and so what a Cryptomatte has.
 NO_MATERIAL = "default_surface"
@@ -20,7 +21,7 @@ class MaterialExporter:
     def __init__(self, engine: Any, scene: Any, view_layer: Any, materials: Materials) -> None:
         self._engine = engine
         self._look = look_of(scene)
-        self._frame = scene.frame_current
+        self._around = surroundings_of(scene)
         self._override = view_layer.material_override
         self._materials = materials
         self._aovs = AovReader(engine, value_columns(view_layer))
@@ -60,7 +61,7 @@ class MaterialExporter:
         if index is None:
             index = self._index[pointer] = len(self._materials.materials)
             values = self._aovs.values_of(material)
-            surface = export_surface(self._engine, material, self._look, self._frame)
+            surface = export_surface(self._engine, material, self._look, self._around)
             self._attributes.append(_attributes(surface))
             self.asks_random |= any(_asks_random(p) for p in surface.programs())
             self._materials.materials.append(

@@ -11,7 +11,9 @@ from . import nodes
 from .names import name_of
 from .shader import Compiler, Ray
 from .shader.closures import BLACK, Closures, total
+from .shader.compiler import NOWHERE
 from .shader.values import Builder
+from .surroundings import Surroundings
 
 MOST_LOBES = 4  # of a surface; each has a normal of its own
 WHITE: Value = (1.0, 1.0, 1.0)
@@ -42,7 +44,9 @@ def look_of(scene: Any) -> Look:
     return replace(look, clay=look.clay and WHITE_CLAY, has_light=False, later=later)
 
 
-def export_surface(engine: Any, material: Any | None, look: Look, frame: int = 1) -> SurfaceData:
+def export_surface(
+    engine: Any, material: Any | None, look: Look, around: Surroundings = NOWHERE
+) -> SurfaceData:
     """The programs of a material, and what of it is rendered as something else."""
     if material is None:
         return _plain((0.8, 0.8, 0.8), look)
@@ -57,7 +61,8 @@ def export_surface(engine: Any, material: Any | None, look: Look, frame: int = 1
         return _plain((0.0, 0.0, 0.0), look)
     owner = f'material "{name_of(material)}"'
     compilers = {
-        kind: Compiler(engine, owner, Ray(kind), frame=frame) for kind in ("CAMERA", "DIFFUSE")
+        kind: Compiler(engine, owner, Ray(kind), surroundings=around)
+        for kind in ("CAMERA", "DIFFUSE")
     }
     camera = _surface(compilers["CAMERA"], output, look)
     bounce = _surface(compilers["DIFFUSE"], output, look.later or look)
@@ -65,7 +70,7 @@ def export_surface(engine: Any, material: Any | None, look: Look, frame: int = 1
         reporting.warn(
             engine, f"{owner} shines, but its light on other surfaces is not rendered yet"
         )
-    shadow = Compiler(engine, owner, Ray("SHADOW"), frame=frame)
+    shadow = Compiler(engine, owner, Ray("SHADOW"), surroundings=around)
     clear = _transparency(shadow, _closures(shadow, output), look)
     return SurfaceData(
         camera,

@@ -14,12 +14,14 @@ from . import nodes
 from .names import name_of
 from .shader import Compiler, Ray
 from .shader.closures import total
+from .shader.compiler import NOWHERE
+from .surroundings import Surroundings
 from .world_map import read_map
 
 BLACK = ProgramData("black", [], (0.0, 0.0, 0.0))
 
 
-def export_world(engine: Any, world: Any | None, frame: int = 1) -> WorldData:
+def export_world(engine: Any, world: Any | None, around: Surroundings = NOWHERE) -> WorldData:
     """What a ray that hits nothing sees; no world at all is black."""
     if world is None:
         return WorldData()
@@ -29,7 +31,7 @@ def export_world(engine: Any, world: Any | None, frame: int = 1) -> WorldData:
         color = tuple(float(c) for c in world.color[:3])
         data = WorldData(color=color)  # type: ignore[arg-type]
         return _hidden(data, ProgramData("world", [], color), seen, lights)
-    return _WorldReader(engine, world, tree, frame).read(seen, lights)
+    return _WorldReader(engine, world, tree, around).read(seen, lights)
 
 
 def _hidden(data: WorldData, camera: ProgramData | None, seen: bool, lights: bool) -> WorldData:
@@ -41,8 +43,8 @@ def _hidden(data: WorldData, camera: ProgramData | None, seen: bool, lights: boo
 
 
 class _WorldReader:
-    def __init__(self, engine: Any, world: Any, tree: Any, frame: int) -> None:
-        self._frame = frame
+    def __init__(self, engine: Any, world: Any, tree: Any, around: Surroundings) -> None:
+        self._around = around
         self._engine = engine
         self._owner = f'world "{name_of(world)}"'
         self._tree = tree
@@ -71,7 +73,9 @@ class _WorldReader:
         return _hidden(data, data.camera_program, seen, lights)
 
     def _compiler(self, kind: str) -> Compiler:
-        return Compiler(self._engine, self._owner, Ray(kind), is_world=True, frame=self._frame)
+        return Compiler(
+            self._engine, self._owner, Ray(kind), is_world=True, surroundings=self._around
+        )
 
     @staticmethod
     def _program(compiler: Compiler, surface: Any) -> ProgramData:

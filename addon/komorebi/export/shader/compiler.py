@@ -15,6 +15,7 @@ from typing import Any
 from ... import reporting
 from .. import nodes
 from ..names import name_of
+from ..surroundings import Surroundings
 from .closures import Closure, Closures
 from .values import VECTORS, Builder, Value
 
@@ -24,6 +25,7 @@ NodeFunction = Callable[["Compiler", Any], Outputs]
 _NODES: dict[str, NodeFunction] = {}
 
 MAX_DEPTH = 150  # nodes in a row; Python's own limit on calls within calls is not far beyond
+NOWHERE = Surroundings()
 GREY: Value = (0.5, 0.5, 0.5)
 
 
@@ -49,17 +51,23 @@ class Compiler:
     """Compiles sockets of one tree for one kind of ray into one Builder."""
 
     def __init__(
-        self, engine: Any, owner: str, ray: Ray, *, is_world: bool = False, frame: int = 1
+        self,
+        engine: Any,
+        owner: str,
+        ray: Ray,
+        *,
+        is_world: bool = False,
+        surroundings: Surroundings = NOWHERE,
     ) -> None:
         self.builder = Builder()
         self.ray = ray
         self.is_world = is_world
-        self.frame = frame  # of the scene, for sequences of pictures
+        self.frame = surroundings.frame  # of the scene, for sequences of pictures
         self.owner = owner  # how warnings begin: world "World"
         self.map_size = 0  # columns of the largest environment map
         # [3, 4] rows of the matrix into the camera's space (right, up, depth; a
         # panorama's: depth, left, up), where it is known
-        self.camera_from_world: Any = None
+        self.camera_from_world = surroundings.camera_from_world
         # what is compiled for a point aside: "dx" or "dy", and how many such steps
         self.shift: tuple[str, Value] | None = None
         self.notes: set[str] = set()  # what is rendered as something simpler, by design
