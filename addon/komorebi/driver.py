@@ -128,7 +128,7 @@ def render_frame(engine: Any, _depsgraph: Any, frame: Frame) -> None:
         engine, cancel,
         lambda: native_scene.load(native, frame.scene, _expected_rays(frame), threads, cancel),
     )  # fmt: skip
-    _warn_environment(engine, parts.environment)
+    _warn_environment(engine, parts.world.environment)
     for sentence in [*parts.warnings, *(s for mesh in parts.meshes for s in mesh.warnings)]:
         reporting.warn(engine, sentence)
     for view in frame.views:

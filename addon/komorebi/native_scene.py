@@ -29,9 +29,7 @@ class Parts:
     """What all views of a frame share, in the core's own form."""
 
     meshes: list[Any] = field(default_factory=list)  # core.Mesh, as SceneData.meshes
-    environment: Any | None = None  # core.Environment
-    world_color: tuple[float, ...] = (0.0, 0.0, 0.0)  # where there is none
-    world_program: Any | None = None  # core.Program, what camera rays see
+    world: native_world.NativeWorld = field(default_factory=native_world.NativeWorld)
     programs: Any = None  # native_programs.Programs
     warnings: list[str] = field(default_factory=list)
     builder: str = "LINEAR"  # of the trees that had to be built
@@ -53,8 +51,7 @@ def load(core: Any, data: SceneData, expected_rays: float, threads: int, cancel:
         parts.meshes.append(_mesh(core, mesh, builder, threads, cancel))
         data.meshes[index] = None  # type: ignore[call-overload]
     parts.programs = native_programs.load(core, data, threads, parts.warnings)
-    world = native_world.load(core, data.world, image_key, parts.programs, threads, cancel)
-    parts.environment, parts.world_color, parts.world_program = world
+    parts.world = native_world.load(core, data.world, image_key, parts.programs, threads, cancel)
     return parts
 
 
@@ -75,16 +72,16 @@ def build(
         native_surfaces.surfaces(parts.programs, data.materials), _random(data.instances)
     )
     world = data.world
-    if parts.environment is None:
-        scene.set_world_color(parts.world_color)
+    if parts.world.environment is None:
+        scene.set_world_color(parts.world.color)
     else:
         scene.set_world_environment(
-            parts.environment,
+            parts.world.environment,
             strength=world.strength, texture_from_world=world.texture_from_world,
         )  # fmt: skip
-    if parts.world_program is not None:
-        scene.set_world_program(parts.world_program)
-    for lamp in data.lamps:
+    if parts.world.camera is not None:
+        scene.set_world_program(parts.world.camera, parts.world.max_radiance)
+    for lamp in [*data.lamps, *parts.world.suns]:
         scene.add_lamp(
             lamp.kind, lamp.radiance, lamp.matrix,
             name=lamp.name, casts_shadow=lamp.casts_shadow, lights_catchers=lamp.lights_catchers,

@@ -278,6 +278,15 @@ class EnvironmentImage:
 
 
 @dataclass(slots=True)
+class SunData:
+    """The disc of a sky's sun, which no map of the world holds."""
+
+    direction: tuple[float, float, float]  # towards it, unit
+    radius: float  # of the disc, an angle in radians
+    program: ProgramData  # the world's with the disc's radiance everywhere
+
+
+@dataclass(slots=True)
 class WorldData:
     """What lights the scene: one colour (radiance, its strength included), a map times `strength`,
     or a program that a map is made from."""
@@ -290,6 +299,7 @@ class WorldData:
     program_size: int = 0  # columns of pixels that its images have; 0: it has none
     resolution: int = 0  # columns of pixels of the map that is made from the program; 0: automatic
     camera_program: ProgramData | None = None  # what camera rays see; None: the same
+    suns: list[SunData] = field(default_factory=list)  # besides `program`
 
 
 @dataclass(slots=True)

@@ -9,12 +9,13 @@ from __future__ import annotations
 from typing import Any
 
 from .. import compat, reporting
-from ..scene_data import ProgramData, WorldData
+from ..scene_data import ProgramData, SunData, WorldData
 from . import nodes
 from .names import name_of
 from .shader import Compiler, Ray
 from .shader.closures import total
 from .shader.compiler import NOWHERE
+from .shader.nodes_sky import SkySun
 from .surroundings import Surroundings
 from .world_map import read_map
 
@@ -64,18 +65,21 @@ class _WorldReader:
         if data is None:
             program = self._program(light, surface)
             data = WorldData(program=program, program_size=light.map_size)
-            shown = self._program(camera, surface)
-            data.camera_program = shown
+            data.camera_program = self._program(camera, surface)
+            data.suns = [self._sun(i, sun, surface) for i, sun in enumerate(light.suns)]
         elif not _same_map(data, read_map(camera, surface)):
             data.camera_program = self._program(camera, surface)
         if not lights and seen and data.camera_program is None:
             data.camera_program = self._program(camera, surface)
         return _hidden(data, data.camera_program, seen, lights)
 
-    def _compiler(self, kind: str) -> Compiler:
-        return Compiler(
-            self._engine, self._owner, Ray(kind), is_world=True, surroundings=self._around
-        )
+    def _sun(self, index: int, sun: SkySun, surface: Any) -> SunData:
+        program = self._program(self._compiler("SUN", index), surface)
+        return SunData(sun.direction, sun.radius, program)
+
+    def _compiler(self, kind: str, sun: int = 0) -> Compiler:
+        ray = Ray(kind, sun)
+        return Compiler(self._engine, self._owner, ray, is_world=True, surroundings=self._around)
 
     @staticmethod
     def _program(compiler: Compiler, surface: Any) -> ProgramData:

@@ -44,7 +44,8 @@ def node(*types: str) -> Callable[[NodeFunction], NodeFunction]:
 class Ray:
     """The kind of ray that a tree is compiled for: Light Path is a constant then."""
 
-    kind: str = "CAMERA"  # CAMERA, DIFFUSE, SHADOW
+    kind: str = "CAMERA"  # CAMERA, DIFFUSE, SHADOW; SUN: DIFFUSE towards the disc of a sky's sun
+    sun: int = 0  # which of Compiler.suns
 
 
 class Compiler:

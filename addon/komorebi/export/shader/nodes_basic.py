@@ -46,7 +46,7 @@ def add_shader(compiler: Compiler, node: Any) -> Outputs:
 
 @node("LIGHT_PATH")
 def light_path(compiler: Compiler, _node: Any) -> Outputs:
-    kind = compiler.ray.kind
+    kind = "DIFFUSE" if compiler.ray.kind == "SUN" else compiler.ray.kind
     return {
         "Is Camera Ray": (float(kind == "CAMERA"),),
         "Is Shadow Ray": (float(kind == "SHADOW"),),

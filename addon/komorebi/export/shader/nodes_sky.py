@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 from ... import core
-from ...scene_data import FloatArray
+from ...scene_data import FloatArray, Value
 from .compiler import Compiler, Outputs, node
 from .nodes_coordinates import default_vector, vector_input
 
@@ -48,21 +48,25 @@ class SkySun:
 @node("TEX_SKY")
 def sky_texture(compiler: Compiler, node: Any) -> Outputs:
     """Camera rays see the disc. For all others the sky is without it, and `compiler.suns` has it:
-    a map that is made of the sky would have to be enormous to hold a sun."""
+    a map that is made of the sky would have to be enormous to hold a sun. A ray towards a sun sees
+    the sky and the disc's mean radiance, wherever it looks."""
     data = _read(node)
     # The input is not there for models that Blender gives none.
     has_vector = "Vector" in node.inputs
     direction = vector_input(compiler, node) if has_vector else default_vector(compiler, node)
     table = None if data.model in OPS else _table(_of_table(data))
+    disc: Value = (0.0, 0.0, 0.0)
     if data.sun_disc and compiler.ray.kind != "CAMERA":
         sun = SkySun(*core.load().sky_sun(data, table))
         if any(sun.radiance) and sun not in compiler.suns:
             compiler.suns.append(sun)
+        if compiler.ray.kind == "SUN" and compiler.suns.index(sun) == compiler.ray.sun:
+            disc = sun.radiance
         data = replace(data, sun_disc=False)
     numbers = tuple(core.load().sky_numbers(data))
     name = OPS.get(data.model, "sky_scattering")
     color = compiler.builder.op(name, direction, 3, numbers=numbers, table=table)
-    return {node.outputs[0].identifier: color}
+    return {node.outputs[0].identifier: compiler.builder.add(color, disc)}
 
 
 def _read(node: Any) -> SkyData:
