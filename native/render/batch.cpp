@@ -169,13 +169,11 @@ bool BatchIntegrator::bounce(const Cancel& cancel) {
       bounces_alone_.begin(surfaces_, s, path, seed, sample);
     }
   }
-  return bounces_.trace(cancel,
-                        [&](std::uint32_t path, const Vec3& light) {
-                          results_[path].radiance += light;
-                        }) &&
-         bounces_alone_.trace(cancel, [&](std::uint32_t path, const Vec3& light) {
-           context_.passes.add(row(path), Quantity::kCatcherLight, light);
-         });
+  return bounces_.trace(cancel, [&](std::uint32_t path, const Vec3& light) {
+    results_[path].radiance += light;
+  }) && bounces_alone_.trace(cancel, [&](std::uint32_t path, const Vec3& light) {
+    context_.passes.add(row(path), Quantity::kCatcherLight, light);
+  });
 }
 
 void BatchIntegrator::light_block(std::uint32_t begin, std::uint32_t end) {

@@ -17,15 +17,15 @@ struct RenderContext {
   CameraView camera;
   EnvironmentView environment;  ///< what is seen behind the scene, unless a program says it
   const Program* world_program = nullptr;
-  EnvironmentView sky;          ///< what lights it: the same, or white for ambient occlusion
-  ProductView product;          ///< bins = 0: light rays are drawn by cosine_share
+  EnvironmentView sky;  ///< what lights it: the same, or white for ambient occlusion
+  ProductView product;  ///< bins = 0: light rays are drawn by cosine_share
   FilterView filter;
   Method method = Method::kAmbientOcclusion;
   AoSampling ao_sampling = AoSampling::kCosine;
-  Vec3 albedo{1.0f};            ///< what light rays are drawn for: see lit_albedo (shade.h)
-  Vec3 clay_albedo{0.8f};       ///< of surfaces without a material
-  bool has_materials = false;   ///< whether surfaces have albedos of their own (shade.h)
-  std::uint32_t bounces = 0;    ///< how often a path goes on from a surface
+  Vec3 albedo{1.0f};               ///< what light rays are drawn for: see lit_albedo (shade.h)
+  Vec3 clay_albedo{0.8f};          ///< of surfaces without a material
+  bool has_materials = false;      ///< whether surfaces have albedos of their own (shade.h)
+  std::uint32_t bounces = 0;       ///< how often a path goes on from a surface
   bool indirect_emission = false;  ///< whether what paths find shines on the surfaces before it
   /// Most that a vertex brings, as the sum of the channels: in view, and after a bounce.
   float clamp_direct = Ray{}.t_max, clamp_indirect = Ray{}.t_max;

@@ -45,10 +45,10 @@ struct TileSums {
 class Film {
  public:
   /// `max_radiance`: bound of the world's radiance; samples beyond 32 times that (and what the
-  /// settings' bounces may add) are clamped and counted, which only a defect elsewhere can cause. Throws std::invalid_argument for a pass
-  /// that is not known. With `catchers` the picture is composed of what is no shadow catcher over
-  /// the shadows on those that are.
-  /// `max_value`: bound of the materials' values (SceneTables).
+  /// settings' bounces may add) are clamped and counted, which only a defect elsewhere can cause.
+  /// Throws std::invalid_argument for a pass that is not known. With `catchers` the picture is
+  /// composed of what is no shadow catcher over the shadows on those that are. `max_value`: bound
+  /// of the materials' values (SceneTables).
   Film(const Rect& region, const Settings& settings, float max_radiance, bool catchers = false,
        float max_value = 1.0f);
 

@@ -33,7 +33,7 @@ struct Trial {
 
 /// Of two samples a pixel.
 Trial try_samples(const RenderContext& context, const PixelGrid& grid, ThreadPool& pool,
-                       const Cancel& cancel) {
+                  const Cancel& cancel) {
   std::atomic<std::uint64_t> bounce_rays{0};
   std::vector<double> row_sums(grid.rows(), 0.0);  // added up in order, whoever made them
   pool.for_each_chunk(grid.rows(), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {

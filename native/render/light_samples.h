@@ -20,7 +20,8 @@ namespace komorebi {
 ///
 /// With bounces most of a sample's time and noise lie elsewhere, and down to one ray is tried.
 ///
-/// @returns kAutomaticLightSamples or half of it, with bounces also less; the former for frames too small to tell, and
+/// @returns kAutomaticLightSamples or half of it, with bounces also less; the former for frames too
+/// small to tell, and
 ///          when cancelled
 std::uint32_t choose_light_samples(const RenderContext& context, ThreadPool& pool,
                                    const Cancel& cancel);

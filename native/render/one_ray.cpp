@@ -96,13 +96,9 @@ void add_bounces(const RenderContext& context, SurfacePoint point, Hit hit, cons
   Vec3 throughput = shade_surface(context, 0).albedo;
   for (std::uint32_t vertex = 0; vertex < context.bounces; ++vertex) {
     const Terminator end = terminator(context, hit, time, point.geometric_normal);
-    const ScatterPoint from{point.normal,
-                            point.geometric_normal,
-                            leaving_origin(point),
-                            end.frequency,
-                            time,
-                            hit.instance,
-                            hit.primitive};
+    const ScatterPoint from{
+        point.normal, point.geometric_normal, leaving_origin(point), end.frequency,
+        time,         hit.instance,           hit.primitive};
     Ray ray;
     if (!scatter(context, vertex, from, sampler, sample, throughput, ray)) return;
     hit = intersect_scalar(context.scene, ray);
@@ -155,8 +151,8 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
                        add_ambient(layout, of_light, drawn.direction, drawn.contribution.x, row);
                      });
   const Shading shading = shade_surface(context, 0);
-  result.radiance = direct_light(context, shading,
-                                 result.radiance / static_cast<float>(context.light_samples));
+  result.radiance =
+      direct_light(context, shading, result.radiance / static_cast<float>(context.light_samples));
   add_bounces(context, point, hit, sampler, sample, ray.time, result.radiance);
   for (const AmbientCast& cast : ambient_casts(context)) {
     for_each_light_ray(cast.context, point, hit, sampler, sample, ray.time,

@@ -5,12 +5,12 @@
 
 namespace komorebi {
 
-/// Light rays of a vertex after a bounce. In sponza, by four bounces under a map, two take a quarter
-/// off the variance and cost as much (28 % more time).
+/// Light rays of a vertex after a bounce. In sponza, by four bounces under a map, two take a
+/// quarter off the variance and cost as much (28 % more time).
 inline constexpr std::uint32_t kLaterLightSamples = 1;
 
-/// So many surfaces scatter every path; from then on a path ends by Russian roulette. Where one did,
-/// it was 10 % sooner through and had 11 % more variance (sponza).
+/// So many surfaces scatter every path; from then on a path ends by Russian roulette. Where one
+/// did, it was 10 % sooner through and had 11 % more variance (sponza).
 inline constexpr std::uint32_t kSureScatters = 2;
 
 /// A place that a path leaves.

@@ -19,8 +19,7 @@ void require(bool holds, const char* sentence) {
 }  // namespace
 
 double bounce_gain(const Settings& s) {
-  const double most =
-      double{std::max(std::max(s.clay_color.x, s.clay_color.y), s.clay_color.z)};
+  const double most = double{std::max(std::max(s.clay_color.x, s.clay_color.y), s.clay_color.z)};
   double gain = 1.0, share = 1.0;
   for (std::uint32_t i = 0; i < s.bounces; ++i) gain += share *= most;
   return gain;
@@ -54,9 +53,10 @@ void check_settings(const Settings& s, std::uint32_t width, std::uint32_t height
             "each channel of clay_color must be 0 to 1");
   }
   require(s.bounces <= kMaxBounces, "bounces must be 0 to 1024");
-  require(std::isfinite(s.sample_clamp_direct) && s.sample_clamp_direct >= 0.0f &&
-              std::isfinite(s.sample_clamp_indirect) && s.sample_clamp_indirect >= 0.0f,
-          "sample_clamp_direct and sample_clamp_indirect must be finite and not negative (0 is none)");
+  require(
+      std::isfinite(s.sample_clamp_direct) && s.sample_clamp_direct >= 0.0f &&
+          std::isfinite(s.sample_clamp_indirect) && s.sample_clamp_indirect >= 0.0f,
+      "sample_clamp_direct and sample_clamp_indirect must be finite and not negative (0 is none)");
   require(std::isfinite(s.filter_width) && s.filter_width >= 0.01f && s.filter_width <= 10.0f,
           "filter_width must be 0.01 to 10 pixels");
   require(std::isfinite(s.mist_start) && std::isfinite(s.mist_depth) && s.mist_depth >= 0.0f,

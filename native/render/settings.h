@@ -45,7 +45,8 @@ struct Settings {
   float ao_distance = 0.0f;                ///< metres; 0: unlimited
   AoSampling ao_sampling = AoSampling::kCosine;
   Vec3 clay_color{0.8f};  ///< albedo under World Light, and of later surfaces; linear Rec.709
-  std::uint32_t bounces = 0;  ///< from surface to surface; 0: light that comes straight from the sky
+  std::uint32_t bounces =
+      0;  ///< from surface to surface; 0: light that comes straight from the sky
   /// Most that one vertex of a sample brings, as the mean of the channels; 0: anything. What the
   /// camera sees without and with bounces; names, meaning and values are those of Cycles.
   float sample_clamp_direct = 0.0f, sample_clamp_indirect = 10.0f;

@@ -14,7 +14,17 @@ from .base import ENGINE_ID
 
 CLASSES = tuple(
     cls
-    for module in (sampling, light_paths, render, view_layer, camera, light, object, world, material)
+    for module in (
+        sampling,
+        light_paths,
+        render,
+        view_layer,
+        camera,
+        light,
+        object,
+        world,
+        material,
+    )
     for cls in module.CLASSES
 )
 

@@ -52,7 +52,9 @@ def set_cycles(scene: Any, samples: int, bounces: int) -> None:
         )
     scene.render.engine = "CYCLES"
     settle(scene.render, "use_persistent_data", True)  # its trees are the same for every seed
-    require(scene.cycles, device="CPU", samples=samples, max_bounces=bounces, pixel_filter_type="BOX")
+    require(
+        scene.cycles, device="CPU", samples=samples, max_bounces=bounces, pixel_filter_type="BOX"
+    )
     require(
         scene.cycles, use_adaptive_sampling=False, use_denoising=False, light_sampling_threshold=0.0
     )
