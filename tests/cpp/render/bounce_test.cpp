@@ -137,8 +137,8 @@ Estimate traced_by_brute_force(const Scene& scene, const Vec3& albedo, std::uint
       const SurfacePoint point = surface_point(scene.view(), hit, ray);
       const double z = unit(random), phi = 2.0 * kPi * unit(random), r = std::sqrt(1.0 - z * z);
       const Vec3d n(point.normal);
-      const Vec3d t = glm::normalize(glm::cross(n, std::abs(n.x) > 0.5 ? Vec3d(0, 1, 0)
-                                                                       : Vec3d(1, 0, 0)));
+      const Vec3d t =
+          glm::normalize(glm::cross(n, std::abs(n.x) > 0.5 ? Vec3d(0, 1, 0) : Vec3d(1, 0, 0)));
       ray = Ray{};
       ray.origin = leaving_origin(point);
       ray.direction = Vec3(r * std::cos(phi) * t + r * std::sin(phi) * glm::cross(n, t) + z * n);
@@ -163,8 +163,8 @@ TEST(Bounces, UnderAMapAgreeWithBruteForce) {
     settings.samples = 512;
     settings.bounces = bounces;
     const Estimate truth = traced_by_brute_force(*scene, settings.clay_color, bounces);
-    for (const auto sampling : {EnvironmentSampling::kProduct, EnvironmentSampling::kMis,
-                                EnvironmentSampling::kCosine}) {
+    for (const auto sampling :
+         {EnvironmentSampling::kProduct, EnvironmentSampling::kMis, EnvironmentSampling::kCosine}) {
       settings.environment_sampling = sampling;
       const Estimate e = estimate(render(scene, settings));
       EXPECT_NEAR(e.mean, truth.mean, 4.0 * std::hypot(e.error, truth.error))
@@ -193,7 +193,9 @@ TEST(Bounces, OfSurfacesWithMaterialsAreThoseOfClay) {
   ASSERT_TRUE(BatchIntegrator(materials).sample(pixels, kCount, found.data(), Cancel()));
   for (std::size_t i = 0; i < found.size(); ++i) {
     const PixelPlace at = pixels[i / kCount];
-    EXPECT_EQ(found[i], render_sample(materials, at.x, at.y, static_cast<std::uint32_t>(i % kCount), nullptr).radiance);
+    EXPECT_EQ(found[i],
+              render_sample(materials, at.x, at.y, static_cast<std::uint32_t>(i % kCount), nullptr)
+                  .radiance);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[i][c], expected[i][c], 1e-5f * expected[i][c]);
   }
 }
