@@ -1,6 +1,8 @@
 # mypy: disable-error-code="valid-type,attr-defined,func-returns-value"
 """The settings of a scene, `scene.komorebi`. Scripts rely on these names and defaults."""
 
+from math import pi
+
 import bpy
 from bpy.props import (
     BoolProperty,
@@ -9,9 +11,10 @@ from bpy.props import (
     FloatVectorProperty,
     IntProperty,
     PointerProperty,
+    StringProperty,
 )
 
-from .callbacks import update_render_passes
+from .callbacks import studio_light_names, update_render_passes
 
 METHODS = (
     ("AMBIENT_OCCLUSION", "Ambient Occlusion", "How much of a white sky each point sees"),
@@ -24,6 +27,11 @@ SURFACES = (
 CLAY_GLASS = (
     ("SKIP", "Skip", "Glass and what else is clear is left out, so that one sees what is behind"),
     ("CLAY", "Clay", "Glass is clay like everything else"),
+)
+SKIES = (
+    ("SCENE", "Scene", "The world of the scene"),
+    ("STUDIO", "Studio Light", "One of Blender's studio lights; the scene's world stays as it is"),
+    ("WHITE", "White", "The same white light from everywhere"),
 )
 AO_SAMPLINGS = (
     ("COSINE", "Cosine", "Rays by the cosine of their angle to the normal: the least noise"),
@@ -112,6 +120,22 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
     ao_sampling: EnumProperty(
         name="Sampling", description="How rays are spread over the hemisphere",
         items=AO_SAMPLINGS, default="COSINE",
+    )  # fmt: skip
+    sky: EnumProperty(
+        name="Sky", description="What lights the scene, and is seen behind it",
+        items=SKIES, default="SCENE",
+    )  # fmt: skip
+    sky_studio_light: StringProperty(
+        name="Studio Light", description="The file of the studio light, as Blender has it",
+        default="forest.exr", search=studio_light_names,
+    )  # fmt: skip
+    sky_rotation: FloatProperty(
+        name="Rotation", description="Turns the studio light about the vertical",
+        default=0.0, soft_min=-pi, soft_max=pi, subtype="ANGLE",
+    )  # fmt: skip
+    sky_strength: FloatProperty(
+        name="Strength", description="Brightness of the studio light, or of the white",
+        default=1.0, min=0.0, soft_max=10.0,
     )  # fmt: skip
     surface: EnumProperty(
         name="Surface", description="What surfaces look like", items=SURFACES, default="MATERIAL"

@@ -16,10 +16,9 @@ from .deform import DeformingShapes
 from .instance import export_instances
 from .motion import InstanceMotion
 from .shutter import Shutter, export_shutter
-from .surroundings import surroundings_of
+from .sky_choice import export_sky
 from .unsupported import warn_scene
 from .wanted import Wanted
-from .world import export_world
 
 
 def export_scene(
@@ -33,11 +32,9 @@ def export_scene(
     times, too, and is at its frame again afterwards.
     """
     warn_scene(engine, depsgraph.scene)
-    # A view layer without its sky has no world at all, neither seen nor as a light.
-    world = depsgraph.scene.world if depsgraph.view_layer.use_sky else None
-    warn_world(engine, world, value_columns(depsgraph.view_layer))
-    exported_world = export_world(engine, world, surroundings_of(depsgraph.scene))
-    exported_world.resolution = depsgraph.scene.komorebi.world_resolution
+    if depsgraph.view_layer.use_sky and depsgraph.scene.komorebi.sky == "SCENE":
+        warn_world(engine, depsgraph.scene.world, value_columns(depsgraph.view_layer))
+    exported_world = export_sky(engine, depsgraph.scene, depsgraph.view_layer)
     shutter = export_shutter(depsgraph.scene, depsgraph.view_layer, sources)
     unchanged = unchanged or Unchanged()
     with nullcontext() if shutter is None else shutter.at_middle(engine):

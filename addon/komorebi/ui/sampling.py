@@ -115,6 +115,25 @@ class KOMOREBI_RENDER_PT_surface(KomorebiPanel, bpy.types.Panel):
             column.prop(settings, "clay_bump")
 
 
+class KOMOREBI_RENDER_PT_sky(KomorebiPanel, bpy.types.Panel):
+    bl_label = "Sky"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return super().poll(context) and context.scene.komorebi.method == "WORLD_LIGHT"
+
+    def draw(self, context: Any) -> None:
+        settings = context.scene.komorebi
+        column = self.column()
+        column.prop(settings, "sky", text="Light From")
+        if settings.sky == "STUDIO":
+            column.prop(settings, "sky_studio_light")
+            column.prop(settings, "sky_rotation")
+        if settings.sky != "SCENE":
+            column.prop(settings, "sky_strength")
+
+
 def draw_method(self: Any, context: Any) -> None:
     """Below the list of render engines, as Cycles draws its device."""
     if context.engine == ENGINE_ID:
@@ -130,4 +149,5 @@ CLASSES = (
     KOMOREBI_RENDER_PT_sampling_advanced,
     KOMOREBI_RENDER_PT_ambient_occlusion,
     KOMOREBI_RENDER_PT_surface,
+    KOMOREBI_RENDER_PT_sky,
 )
