@@ -77,8 +77,6 @@ class SurfaceBatch {
     point.offset = floats_[22][i];
     return point;
   }
-  std::uint32_t pixel_seed(std::uint32_t i) const { return pixel_seed_[i]; }
-  std::uint32_t first_index(std::uint32_t i) const { return first_index_[i]; }
   /// What shade_surfaces has set.
   Vec3 albedo(std::uint32_t i) const {
     return Vec3(shading_[0][i], shading_[1][i], shading_[2][i]);

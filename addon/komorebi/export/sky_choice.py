@@ -35,7 +35,9 @@ def studio_lights() -> dict[str, str]:
     """The HDR studio lights that there are, file by name: Blender's own, then the user's."""
     found: dict[str, str] = {}
     for folder in (
-        bpy.utils.system_resource("DATAFILES", path=os.path.join("studiolights", "world")),
+        bpy.utils.system_resource(  # type: ignore[attr-defined]
+            "DATAFILES", path=os.path.join("studiolights", "world")
+        ),
         bpy.utils.user_resource("DATAFILES", path=os.path.join("studiolights", "world")),
     ):
         if folder and os.path.isdir(folder):

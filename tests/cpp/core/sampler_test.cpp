@@ -103,8 +103,10 @@ TEST(Sampler, IsAPureFunction) {
 
 TEST(Sampler, DimensionTableIsFixed) {
   EXPECT_EQ(vertex_dimension(0, kVertexLightDirection), 8u);
-  EXPECT_EQ(vertex_dimension(0, kVertexLamp), 10u);
-  EXPECT_EQ(vertex_dimension(2, kVertexScatter), 28u);
+  EXPECT_EQ(vertex_dimension(0, kVertexAmbient), 14u);
+  EXPECT_EQ(vertex_dimension(0, kVertexLobe), 16u);
+  EXPECT_EQ(vertex_dimension(0, kVertexLamp), 18u);
+  EXPECT_EQ(vertex_dimension(2, kVertexScatter), 44u);
 }
 
 // Known values: a change of the hash or of the order of operations changes every picture.

@@ -10,6 +10,7 @@
 #include "render/sky_guide.h"
 #include "support/lottery.h"
 #include "support/made_curves.h"
+#include "support/materials.h"
 #include "support/scenes.h"
 
 namespace komorebi::testing {
@@ -80,7 +81,9 @@ void add_lamps(Scene& scene) {
 /// Things that every pass has something to tell of: a shadow catcher, a hole, objects without
 /// shadow or not to be seen, materials and UVs, and a camera that will be elsewhere.
 /// @param lottery  of what has the first material, all of it
-std::shared_ptr<Scene> telling_scene(const Lottery* lottery = nullptr) {
+/// @param surfaces of the two materials
+std::shared_ptr<Scene> telling_scene(const Lottery* lottery = nullptr,
+                                     std::vector<Material> surfaces = {}) {
   Polygons ground = quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0});
   const Polygons ball = sphere(7, Vec3d(0), 1.0, true), cube = box(Vec3d(-0.5), Vec3d(0.5));
   auto scene = std::make_shared<Scene>();
@@ -120,6 +123,7 @@ std::shared_ptr<Scene> telling_scene(const Lottery* lottery = nullptr) {
   tables.value_count = 4;
   tables.values = {0.0f, 0.25f, 2.0f, 1.0f, 9.0f, -300.0f, 0.1f, 1.0f};
   scene->set_tables(std::move(tables));
+  if (!surfaces.empty()) scene->set_surfaces(std::move(surfaces), {});
   add_lamps(*scene);
   scene->set_world_environment(gradient_map(), 0.7, Mat3d(1.0));
   CameraDesc camera = camera_at({5, -4, 3}, {0, 0, 0.8}, 150, 90);
@@ -293,6 +297,46 @@ TEST_P(Equality, ThroughBouncesThreadsTilesBuildersAndInstructionSetsDoNotShow) 
   force_instruction_set("");
   settings_.bounces = 3;
   EXPECT_NE(render(scene, settings_), expected);
+}
+
+/// Two materials of many lobes that ask much of their points: one with holes by lot, relief and
+/// light of its own, one that lets light through.
+std::vector<Material> many_lobes() {
+  MadeProgram made;
+  const auto third = MadeProgram::number(0.3);
+  const auto place = made.each("multiply", made.input("position"), third);
+  const auto share = made.each("multiply", place, place);
+  const auto tilted = made.each("add", made.input("normal"), MadeProgram::color(0.2, 0.1, 0.0));
+  const auto clear = made.each("multiply", made.input("object_normal"), third);
+  const auto of = [&](const MadeProgram::Vec& emission, bool transmits) {
+    Material material;
+    material.camera = SurfaceProgram(made.program({emission, clear, MadeProgram::number(0.1), share,
+                                                   tilted, MadeProgram::color(0.2, 0.3, 0.1)}),
+                                     {{false, true}, {transmits, false}});
+    material.clear = made.program({clear});
+    return material;
+  };
+  return {of(place, false), of(MadeProgram::color(0, 0, 0), true)};
+}
+
+TEST_P(Equality, BatchesAgreeWithOneRayOnMaterials) {
+  settings_.samples = 3;
+  settings_.bounces = 3;
+  expect_batches_as_one_ray(telling_scene(nullptr, many_lobes()), settings_);
+}
+
+TEST_P(Equality, OfMaterialsThreadsTilesAndInstructionSetsDoNotShow) {
+  settings_.bounces = 2;
+  const auto scene = telling_scene(nullptr, many_lobes());
+  const auto expected = render(scene, settings_);
+  EXPECT_NE(render(telling_scene(), settings_), expected);
+  settings_.threads = 1;
+  settings_.tile_size = 24;
+  for (const std::string& name : built_instruction_sets()) {
+    force_instruction_set(name);
+    EXPECT_EQ(render(scene, settings_), expected) << name;
+  }
+  force_instruction_set("");
 }
 
 TEST_P(Equality, BatchesAgreeWithOneRayThroughCutOuts) {
