@@ -18,7 +18,11 @@ FLAT_RECTS = VERSION >= (4, 1, 0)  # rect.foreach_set wants one dimension instea
 GENERIC_ATTRIBUTES = VERSION >= (3, 6, 0)  # position, .corner_vert, sharp_face are attributes
 LONG_PASS_NAMES = VERSION >= (5, 0, 0)  # "Material Index", not "IndexMA"
 CORNER_NORMALS = VERSION >= (4, 1, 0)  # mesh.corner_normals, no auto smooth
-OLD_LAMPS = VERSION < (4, 0, 0)  # Cycles' lights: disks for balls, areas of a quarter of their power
+OLD_LAMPS = VERSION < (
+    4,
+    0,
+    0,
+)  # Cycles' lights: disks for balls, areas of a quarter of their power
 
 
 def cycles_or(block: Any, otherwise: Any) -> Any:

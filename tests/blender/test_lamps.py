@@ -126,7 +126,7 @@ def warnings_of(folder):
 
 
 def test_camera_and_linking_are_warned_of(folder):
-    scene, light = scene_with("AREA", shape="SQUARE", size=1.0)
+    _, light = scene_with("AREA", shape="SQUARE", size=1.0)
     assert warnings_of(folder) == ""
     light.visible_camera = True
     assert 'light "Key": the camera sees no lamps yet' in warnings_of(folder)
@@ -137,7 +137,7 @@ def test_camera_and_linking_are_warned_of(folder):
 
 
 def test_shadow_and_portal(folder):
-    scene, light = scene_with("POINT", shadow_soft_size=0.0)
+    _, light = scene_with("POINT", shadow_soft_size=0.0)
     bpy.ops.mesh.primitive_plane_add(size=1.0, location=(0.0, 0.0, 1.5))
     assert irradiance(folder) == 0.0
     if hasattr(light.data.cycles, "cast_shadow"):
@@ -163,5 +163,3 @@ def test_new_settings():
     light.data.normalize, light.data.use_temperature, light.data.temperature = True, True, 3000.0
     red, _, blue = support.exported().lamps[0].radiance
     assert red > 2.0 * blue > 0.0
-
-

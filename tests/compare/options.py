@@ -49,9 +49,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument(
         "--world-image", type=Path, help="light world mode with this equirectangular picture"
     )
-    made.add_argument(
-        "--no-lamps", action="store_true", help="world mode: the world's light alone"
-    )
+    made.add_argument("--no-lamps", action="store_true", help="world mode: the world's light alone")
     made.add_argument(
         "--out", type=Path, help="folder for pictures (default: build/compare/SCENE-MODE)"
     )

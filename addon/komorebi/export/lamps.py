@@ -139,7 +139,9 @@ def _lamp(light: Any, strength: Color, matrix: DoubleArray) -> LampData | None:
     return make(light, strength, matrix)
 
 
-def _data(kind: str, strength: Color, factor: float, matrix: DoubleArray, **sizes: float) -> LampData:
+def _data(
+    kind: str, strength: Color, factor: float, matrix: DoubleArray, **sizes: float
+) -> LampData:
     return LampData("", kind, np.array(strength, np.float64) * factor, matrix, dict(sizes))
 
 
