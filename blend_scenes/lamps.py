@@ -37,8 +37,8 @@ def add_lamp(name: str, kind: str, **settings: object) -> bpy.types.Object:
 
 
 def lamps() -> None:
-    """A lamp of each shape over a block and a ball of its own, two of them made by a collection
-    that is instanced, and a low sun over all."""
+    """A lamp of each shape over a block and a ball of its own, two more made by instances of a
+    collection, and a low sun over all."""
     empty_scene(320, 320)
     add_rectangle("Floor", (-6.0, -6.0, 0.0), (12.0, 0.0, 0.0), (0.0, 12.0, 0.0))
     for i, (name, kind, settings, turn, stretch) in enumerate(LAMPS):

@@ -22,11 +22,7 @@ NORMALS_AS_DIRECTIONS = VERSION < (4, 0, 0)  # so the node Vector Transform turn
 CORNER_NORMALS = VERSION >= (4, 1, 0)  # mesh.corner_normals, no auto smooth
 NOISE_REPEATS = VERSION >= (4, 1, 0)  # every 100,000 cells, where floats lose places in a cell
 VORONOI_PCG = VERSION >= (5, 0, 0)  # hashes cells of two dimensions and more
-OLD_LAMPS = VERSION < (
-    4,
-    0,
-    0,
-)  # Cycles' lights: disks for balls, areas of a quarter of their power
+OLD_LAMPS = VERSION < (4, 0, 0)  # disks for balls, areas of a quarter of their power
 
 
 def cycles_or(block: Any, otherwise: Any) -> Any:

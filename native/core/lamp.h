@@ -27,6 +27,7 @@ enum LampFlag : std::uint32_t {
 /// along the axis: a stretched lamp has an elliptical cone.
 struct Spot {
   Mat3 local_from_world{1.0f};
+  float stretch = 1.0f;           ///< at least the most that local_from_world makes of a length
   float cosine = -2.0f;           ///< of half the angle; −2: no spot
   float blend = 0.0f;             ///< cosines over which its rim fades
   bool scales_by_cosine = false;  ///< Cycles 3.x
@@ -77,18 +78,21 @@ inline float area_of(const Lamp& lamp) {
   return lamp.kind == LampKind::kEllipse ? rectangle * (0.25f * kPiFloat) : rectangle;
 }
 
-/// The share of a spot's light that goes in a direction (unit, from the lamp, world space).
-inline float spot_share(const Spot& spot, const Vec3& from_lamp) {
-  if (spot.cosine < -1.0f) return 1.0f;
-  const Vec3 local = spot.local_from_world * from_lamp;
-  const float length = std::sqrt(glm::dot(local, local));
-  if (!(length > 0.0f)) return 0.0f;
-  const float cosine = local.z / length;
+/// The share of a spot's light that goes at this cosine to its axis, in its own space.
+inline float spot_share_at(const Spot& spot, float cosine) {
   const float above = cosine - spot.cosine;
   if (!(above > 0.0f)) return 0.0f;
   const float x = above < spot.blend ? above / spot.blend : 1.0f;
   const float smooth = x * x * (3.0f - 2.0f * x);
   return spot.scales_by_cosine ? smooth * cosine : smooth;
+}
+
+/// The share of a spot's light that goes in a direction (unit, from the lamp, world space).
+inline float spot_share(const Spot& spot, const Vec3& from_lamp) {
+  if (spot.cosine < -1.0f) return 1.0f;
+  const Vec3 local = spot.local_from_world * from_lamp;
+  const float length = std::sqrt(glm::dot(local, local));
+  return length > 0.0f ? spot_share_at(spot, local.z / length) : 0.0f;
 }
 
 /// The share of an area's radiance that is seen at a cosine > 0 to its axis.

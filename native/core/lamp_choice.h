@@ -52,6 +52,21 @@ inline float ball_importance(const Vec3& centre, float radius, float power, cons
   return power / d2 * greatest_cosine(normal, to / d, radius / d);
 }
 
+/// The largest share of a spot's light that goes from anywhere on the lamp to where `from` points,
+/// from its middle.
+inline float greatest_spot_share(const Lamp& lamp, const Vec3& from) {
+  const Vec3 local = lamp.spot.local_from_world * from;
+  const float length = std::sqrt(glm::dot(local, local));
+  const float off = lamp.radius * lamp.spot.stretch;
+  if (!(length > off)) return 1.0f;
+  const float sine = off / length, c = local.z / length;
+  const float cosine = std::sqrt((1.0f - sine) * (1.0f + sine));
+  if (c >= cosine) return 1.0f;
+  const float across = std::sqrt(max_of((1.0f - c) * (1.0f + c), 0.0f));
+  const float rounding = lamp.radius > 0.0f ? 1e-5f : 0.0f;
+  return spot_share_at(lamp.spot, c * cosine + across * sine + rounding);
+}
+
 }  // namespace detail
 
 /// The radius of a ball around a lamp that is at a place.
@@ -98,12 +113,8 @@ inline float lamp_importance(const Lamp& lamp, const Vec3& p, const Vec3& normal
   if (is_area(lamp.kind)) {
     if (!(glm::dot(from, lamp.direction) > 0.0f)) return 0.0f;
   } else if (lamp.spot.cosine >= -1.0f) {
-    const float length = std::sqrt(glm::dot(from, from));
-    if (length > radius) {
-      const float share = spot_share(lamp.spot, from / length);
-      // Of a lamp with a size other points may still shine here.
-      importance *= lamp.radius > 0.0f ? max_of(share, 0.02f) : share;
-    }
+    if (glm::dot(from, from) > radius * radius)
+      importance *= detail::greatest_spot_share(lamp, from);
   }
   return importance;
 }

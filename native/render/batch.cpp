@@ -142,8 +142,10 @@ bool BatchIntegrator::light(const Cancel& cancel) {
       cast(begin, std::min(surfaces_.size(), begin + size));
     }
   };
-  for_each_block(light_caster_,
-                 [&](std::uint32_t begin, std::uint32_t end) { light_block(begin, end); });
+  if (!is_dark(context_)) {
+    for_each_block(light_caster_,
+                   [&](std::uint32_t begin, std::uint32_t end) { light_block(begin, end); });
+  }
   for (Ambient& ambient : ambient_) {
     for_each_block(ambient.caster, [&](std::uint32_t begin, std::uint32_t end) {
       ambient_block(ambient.passes, ambient.caster, begin, end);

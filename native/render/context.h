@@ -65,6 +65,11 @@ struct RenderContext {
   MistFalloff mist_falloff = MistFalloff::kQuadratic;
 };
 
+/// Whether no light comes from the sky, so that no rays need to go there.
+inline bool is_dark(const RenderContext& context) {
+  return context.sky.width == 0 && context.sky.constant == Vec3(0.0f);
+}
+
 /// An upper bound of the radiance that the world sends along any ray, and about the most that lamps
 /// bring to a camera sample.
 float max_radiance(const Scene& scene, const Settings& settings);

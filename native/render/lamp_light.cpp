@@ -19,7 +19,8 @@ void lift(const Terminator& end, float share, const LampSample& drawn, const Vec
 }  // namespace
 
 std::uint32_t lamp_rays(const RenderContext& context) {
-  return context.lamps.count > 0 ? (context.light_samples + 1) / 2 : 0;
+  if (context.lamps.count == 0) return 0;
+  return is_dark(context) ? context.light_samples : (context.light_samples + 1) / 2;
 }
 
 LampRay draw_lamp_ray(const RenderContext& context, const LampPoint& point, const Sampler& sampler,

@@ -25,7 +25,8 @@ struct LampRay {
   bool below = false;       ///< a lifted one that goes below its own triangle
 };
 
-/// Rays to lamps that each camera sample casts from a surface.
+/// Rays to lamps that each camera sample casts from a surface: half as many as to the sky, or as
+/// many in its place where it is black.
 std::uint32_t lamp_rays(const RenderContext& context);
 
 /// Draws lamp ray j of a surface point of camera sample `sample`, at path vertex `vertex`.

@@ -46,6 +46,9 @@ void set_spot(const LampInput& input, Lamp& lamp) {
   Mat3d inverse = glm::inverse(Mat3d(input.world_from_lamp));
   for (int c = 0; c < 3; ++c) inverse[c][2] = -inverse[c][2];
   lamp.spot.local_from_world = Mat3(inverse);
+  double squares = 0.0;
+  for (int c = 0; c < 3; ++c) squares += glm::dot(inverse[c], inverse[c]);
+  lamp.spot.stretch = static_cast<float>(std::sqrt(squares));
   const double cosine = std::cos(0.5 * input.spot_angle);
   lamp.spot.cosine = static_cast<float>(cosine);
   lamp.spot.blend = static_cast<float>((1.0 - cosine) * input.spot_blend);
