@@ -28,26 +28,69 @@ void MaterialFilter::bind(const Scene& scene) {
   context_.frame_height = static_cast<float>(scene.camera_desc().height);
 }
 
+namespace {
+
+/// Hits that the same program decides on, until there are enough of them or another follows.
+class PendingHits {
+ public:
+  void add(const RenderContext& context, const Program& program, std::uint32_t first_output,
+           const ShadeTask& task, const Ray& ray, bool* accepted) {
+    if (&program != program_ || count_ == Program::kLanes) decide(context);
+    if (count_ == 0) {
+      program_ = &program;
+      first_output_ = first_output;
+      asks_ = asks_for_point(program);
+    }
+    ShadeTask& own = tasks_[count_];
+    own = task;
+    if (asks_) own.point = surface_point(context.scene, task.hit, ray);
+    lots_[count_] = hash_combine(hash_combine(ray.path_key, task.hit.instance), task.hit.primitive);
+    accepted_[count_++] = accepted;
+  }
+
+  void decide(const RenderContext& context) {
+    if (count_ == 0) return;
+    float shares[Program::kLanes];
+    shader_.clear_shares(context, *program_, first_output_, tasks_, count_, shares);
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      *accepted_[i] = to_unit_float(lots_[i]) >= shares[i];
+    }
+    count_ = 0;
+  }
+
+ private:
+  MaterialShader shader_;
+  const Program* program_ = nullptr;
+  std::uint32_t first_output_ = 0, count_ = 0;
+  bool asks_ = false;
+  ShadeTask tasks_[Program::kLanes];
+  std::uint32_t lots_[Program::kLanes];
+  bool* accepted_[Program::kLanes];
+};
+
+}  // namespace
+
 void MaterialFilter::accepts(const void* user, const HitQuery* queries, std::uint32_t count,
                              bool* accepted) {
   const RenderContext& context = static_cast<const MaterialFilter*>(user)->context_;
-  thread_local MaterialShader shader;
+  thread_local PendingHits pending;
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto& [hit, ray] = queries[i];
     const PathKind kind = path_kind(ray.path_key);
     const std::uint32_t vertex = kind == PathKind::kCamera ? 0 : 1;
-    ShadeTask task =
+    const ShadeTask task =
         shade_task(context, hit, SurfacePoint{}, ray.direction, ray.time, 0, 0, vertex);
     const Material& material = context.tables->surface(task.material);
     accepted[i] = true;
     if (!material.clear) continue;
-    const bool to_light = kind == PathKind::kLight;
-    const Program& program = to_light ? *material.clear : *material.of_vertex(vertex).program;
-    if (asks_for_point(program)) task.point = surface_point(context.scene, hit, ray);
-    const float share = shader.clear_share_of(context, task, to_light);
-    const std::uint32_t lot = hash_combine(hash_combine(ray.path_key, hit.instance), hit.primitive);
-    accepted[i] = to_unit_float(lot) >= share;
+    if (kind == PathKind::kLight) {
+      pending.add(context, *material.clear, 0, task, ray, &accepted[i]);
+    } else {
+      pending.add(context, *material.of_vertex(vertex).program, SurfaceProgram::kTransparency, task,
+                  ray, &accepted[i]);
+    }
   }
+  pending.decide(context);
 }
 
 }  // namespace komorebi

@@ -69,11 +69,13 @@ Vec2 barycentric_step(const Placed& placed, const ShadeTask& task, const Vec3& w
 /// point is seen, in pixels from the bottom left of the frame.
 class FilmPlace {
  public:
-  explicit FilmPlace(const CameraView& camera)
-      : camera_(camera),
-        into_film_(glm::inverse(Mat3d(camera.per_x, camera.per_y, camera.direction))) {}
+  explicit FilmPlace(const CameraView& camera) : camera_(camera) {}
 
-  Vec2 of(const Vec3& world) const {
+  Vec2 of(const Vec3& world) {
+    if (!known_) {
+      into_film_ = glm::inverse(Mat3d(camera_.per_x, camera_.per_y, camera_.direction));
+      known_ = true;
+    }
     const Vec3d at = into_film_ * (Vec3d(world) - camera_.origin);
     const double w = camera_.kind == CameraKind::kOrthographic ? 1.0 : at.z;
     if (camera_.kind == CameraKind::kPanorama || !(std::abs(w) > 0.0)) return Vec2(0.0f);
@@ -83,14 +85,15 @@ class FilmPlace {
 
  private:
   const CameraView& camera_;
-  Mat3d into_film_;
+  bool known_ = false;
+  Mat3d into_film_{1.0};
 };
 
 /// How far the point moves in its surface when the ray's pixel moves by one to the right or up: of
 /// a camera ray by the neighbouring pixel's ray; after a bounce in some direction of the surface,
 /// as wide as a pixel would be so far away.
-void differentials(const RenderContext& context, const FilmPlace& film, const ShadeTask& task,
-                   Vec3& dx, Vec3& dy) {
+void differentials(const RenderContext& context, FilmPlace& film, const ShadeTask& task, Vec3& dx,
+                   Vec3& dy) {
   const Vec3 normal = task.point.geometric_normal;
   if (task.vertex > 0 || context.camera.kind == CameraKind::kPanorama) {
     const double width = context.camera.kind == CameraKind::kPanorama
@@ -148,7 +151,7 @@ const ShadePoints& MaterialPoints::fill(const RenderContext& context, const Prog
   put(PointInput::kCamera, [&](const ShadeTask& t) {
     return Vec3((Vec3d(t.point.position) - context.camera.origin) * camera_axes(context.camera));
   });
-  const FilmPlace film(context.camera);
+  FilmPlace film(context.camera);
   put(PointInput::kWindow, [&](const ShadeTask& t) {
     const Vec2 at = film.of(t.point.position);
     return Vec3(at.x / context.frame_width, at.y / context.frame_height, 0.0f);
@@ -194,7 +197,7 @@ void MaterialPoints::fill_attributes(const RenderContext& context, const Program
   attributes_.resize(4 * kLanes * names.size());
   attribute_columns_.resize(4 * names.size());
   if (names.empty()) return;
-  const FilmPlace film(context.camera);
+  FilmPlace film(context.camera);
   for (std::size_t a = 0; a < names.size(); ++a) {
     float* const to = &attributes_[4 * kLanes * a];
     for (std::size_t c = 0; c < 4; ++c) attribute_columns_[4 * a + c] = to + c * kLanes;

@@ -108,12 +108,13 @@ void MaterialShader::shade(const RenderContext& context, std::span<ShadeTask> ta
   }
 }
 
-float MaterialShader::clear_share_of(const RenderContext& context, const ShadeTask& task,
-                                     bool to_light) {
-  const Material& material = context.tables->surface(task.material);
-  const SurfaceProgram& surface = material.of_vertex(task.vertex);
-  run(context, to_light ? *material.clear : *surface.program, &task, 1);
-  return clear_share(Outputs{rows_.data(), 0}.vector(to_light ? 0 : SurfaceProgram::kTransparency));
+void MaterialShader::clear_shares(const RenderContext& context, const Program& program,
+                                  std::uint32_t first, const ShadeTask* tasks, std::uint32_t count,
+                                  float* shares) {
+  run(context, program, tasks, count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    shares[i] = clear_share(Outputs{rows_.data(), i}.vector(first));
+  }
 }
 
 }  // namespace komorebi

@@ -14,9 +14,10 @@ class MaterialShader {
   /// those of the lobes that were chosen. Hits of one material that follow each other run together.
   void shade(const RenderContext& context, std::span<ShadeTask> tasks, Shading* shadings);
 
-  /// How much of the rays that meet a hit goes straight through.
-  /// @param to_light  of rays that look for light, else of those that look at surfaces
-  float clear_share_of(const RenderContext& context, const ShadeTask& task, bool to_light);
+  /// How much of the rays that meet some hits goes straight through: what a program says of at most
+  /// Program::kLanes points. Its outputs from `first` on are a transparency.
+  void clear_shares(const RenderContext& context, const Program& program, std::uint32_t first,
+                    const ShadeTask* tasks, std::uint32_t count, float* shares);
 
  private:
   void run(const RenderContext& context, const Program& program, const ShadeTask* tasks,
