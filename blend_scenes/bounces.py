@@ -58,8 +58,8 @@ def interior() -> None:
     add_rectangle("Behind", (-3.0, -2.5, 0.0), (0.0, 0.0, 2.6), (6.0, 0.0, 0.0))
     # The right wall has two windows: what is left of it are bars.
     for name, y, z, wide, high in (
-        ("Below", -2.5, 0.0, 5.0, 0.9), ("Above", -2.5, 2.1, 5.0, 0.5), ("Near", -2.5, 0.9, 0.9, 1.2),
-        ("Middle", -0.4, 0.9, 0.8, 1.2), ("Far", 1.6, 0.9, 0.9, 1.2),
+        ("Below", -2.5, 0.0, 5.0, 0.9), ("Above", -2.5, 2.1, 5.0, 0.5),
+        ("Near", -2.5, 0.9, 0.9, 1.2), ("Middle", -0.4, 0.9, 0.8, 1.2), ("Far", 1.6, 0.9, 0.9, 1.2),
     ):  # fmt: skip
         add_box(name, (0.2, wide, high), (3.1, y + wide / 2, z + high / 2))
     add_box("Table", (1.6, 0.9, 0.06), (0.2, 0.6, 0.75))
@@ -71,10 +71,12 @@ def interior() -> None:
     add_box("Chest", (1.0, 0.6, 0.6), (-1.6, -0.6, 0.3)).rotation_euler = (0.0, 0.0, 0.5)
     add_camera((1.4, -2.3, 1.5), (-0.6, 1.2, 0.9), lens=22.0)
     sun = (16.5 / 64, 20.5 / 32)
-    set_map(
-        "Afternoon", 64, 32,
-        lambda *at: (90.0, 75.0, 50.0) if at == sun else (0.5, 0.8, 1.3) if at[1] > 0.5 else (0.25, 0.22, 0.18),
-    )  # fmt: skip
+    sky, ground = (0.5, 0.8, 1.3), (0.25, 0.22, 0.18)
+
+    def afternoon(x: float, y: float) -> tuple[float, float, float]:
+        return (90.0, 75.0, 50.0) if (x, y) == sun else sky if y > 0.5 else ground
+
+    set_map("Afternoon", 64, 32, afternoon)
 
 
 SCENES: dict[str, Callable[[], None]] = {scene.__name__: scene for scene in (cavity, interior)}

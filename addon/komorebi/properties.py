@@ -111,15 +111,15 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
     )  # fmt: skip
     bounces: IntProperty(
         name="Bounces",
-        description="How often light goes from surface to surface under World Light: 0 is what comes "
-        "straight from the world; each more brightens what faces other surfaces",
+        description="How often light goes from surface to surface under World Light: 0 is what "
+        "comes straight from the world; each more brightens what faces other surfaces",
         default=2, min=0, max=1024, soft_max=16,
     )  # fmt: skip
     # Not Blender's ao_bounces, which are those of Fast GI.
     ao_indirect_bounces: IntProperty(
         name="Bounces",
-        description="How often the white sky's light goes from surface to surface before it comes to "
-        "what is seen: 0 is plain ambient occlusion",
+        description="How often the white sky's light goes from surface to surface before it comes "
+        "to what is seen: 0 is plain ambient occlusion",
         default=0, min=0, max=1024, soft_max=16,
     )  # fmt: skip
     sample_clamp_direct: FloatProperty(

@@ -8,8 +8,18 @@ from __future__ import annotations
 import bpy
 
 from . import (
-    adopted, camera, light, light_paths, material, menus, object, render, sampling, view_layer, world,
-)  # fmt: skip
+    adopted,
+    camera,
+    light,
+    light_paths,
+    material,
+    menus,
+    object,
+    render,
+    sampling,
+    view_layer,
+    world,
+)
 from .base import ENGINE_ID
 
 CLASSES = tuple(
