@@ -71,13 +71,12 @@ def interior() -> None:
     add_box("Chest", (1.0, 0.6, 0.6), (-1.6, -0.6, 0.3)).rotation_euler = (0.0, 0.0, 0.5)
     add_camera((1.4, -2.3, 1.5), (-0.6, 1.2, 0.9), lens=22.0)
     sun = (16.5 / 64, 20.5 / 32)
+    sky, ground = (0.5, 0.8, 1.3), (0.25, 0.22, 0.18)
 
-    def radiance(*at: float) -> tuple[float, float, float]:
-        if at == sun:
-            return 90.0, 75.0, 50.0
-        return (0.5, 0.8, 1.3) if at[1] > 0.5 else (0.25, 0.22, 0.18)
+    def afternoon(x: float, y: float) -> tuple[float, float, float]:
+        return (90.0, 75.0, 50.0) if (x, y) == sun else sky if y > 0.5 else ground
 
-    set_map("Afternoon", 64, 32, radiance)
+    set_map("Afternoon", 64, 32, afternoon)
 
 
 SCENES: dict[str, Callable[[], None]] = {scene.__name__: scene for scene in (cavity, interior)}

@@ -25,10 +25,11 @@ struct ScatterPoint {
 /// The ray by which a path goes on from its vertex `vertex`, in proportion to the cosine, and the
 /// path's throughput from there on; false where it ends. `throughput` includes the vertex's albedo.
 ///
-/// Rays that miss bring nothing: light rays find all of the sky, with a density that follows what
-/// it brings (or the cosine, where the sky is even), so that a second strategy beside them would
-/// have noise of its own and none to take away. There are no light sources that only scattered
-/// rays find, hence no caustics either.
+/// Rays that miss bring nothing: light rays find all of the sky, with a density above 0 wherever
+/// light comes from. To let both bring it, weighted by their densities, would take away noise (a
+/// second light ray takes a quarter), but needs the product's density in a given direction, which
+/// nothing evaluates yet. There are no light sources that only scattered rays find, hence no
+/// caustics either.
 bool scatter(const RenderContext& context, std::uint32_t vertex, const ScatterPoint& point,
              const Sampler& sampler, std::uint32_t sample, Vec3& throughput, Ray& ray);
 

@@ -146,7 +146,7 @@ def test_furnace_hides_a_white_body(folder):
 def test_bounces_in_a_cavity_are_a_geometric_series(folder):
     """Each sends back ρ of what it gets, of which s leaves by the opening: ρ s Σ (ρ (1 − s))^i."""
     for bounces in (0, 1, 2, 4, 8):
-        made = pictures(folder, "cavity", samples=64, method="WORLD_LIGHT", bounces=bounces)
+        made = pictures(folder, "cavity", samples=16, method="WORLD_LIGHT", bounces=bounces)
         albedo, open_share = 0.8, bpy.context.scene["open_share"]
         series = sum((albedo * (1.0 - open_share)) ** i for i in range(bounces + 1))
         agree(made, albedo * open_share * series, np.ones(made.shape[1:], bool), 2e-4)

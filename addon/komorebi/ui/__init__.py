@@ -19,7 +19,7 @@ from . import (
     sampling,
     view_layer,
     world,
-)  # fmt: skip
+)
 from .base import ENGINE_ID
 
 CLASSES = tuple(
