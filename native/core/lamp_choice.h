@@ -113,7 +113,8 @@ inline float lamp_importance(const Lamp& lamp, const Vec3& p, const Vec3& normal
   if (is_area(lamp.kind)) {
     if (!(glm::dot(from, lamp.direction) > 0.0f)) return 0.0f;
   } else if (lamp.spot.cosine >= -1.0f) {
-    if (glm::dot(from, from) > radius * radius) importance *= detail::greatest_spot_share(lamp, from);
+    if (glm::dot(from, from) > radius * radius)
+      importance *= detail::greatest_spot_share(lamp, from);
   }
   return importance;
 }
