@@ -133,6 +133,25 @@ KOMOREBI_LANE void squared_distance(const VoronoiRow* a, const VoronoiRow* b, st
   }
 }
 
+/// Minkowski's distance. Exponent 1/2, which a new node has, stays in the loop: the very roots and
+/// squares that add_powers and take_roots take, lane by lane, for it.
+template <std::size_t N>
+KOMOREBI_LANE void minkowski_rows(const VoronoiRow* a, const VoronoiRow* b, const float* exponent,
+                                  std::uint32_t count, float* __restrict out) {
+  std::uint32_t others = 0;
+  for (std::uint32_t i = 0; i < count; ++i) others |= exponent[i] != 0.5f;
+  if (others == 0) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      float sum = 0.0f;
+      for (std::size_t d = 0; d < N; ++d) sum += __builtin_sqrtf(absolute(a[d][i] - b[d][i]));
+      out[i] = sum * sum;
+    }
+    return;
+  }
+  for (std::size_t d = 0; d < N; ++d) add_powers(a[d], b[d], exponent, count, d == 0, out);
+  take_roots(exponent, count, out);
+}
+
 /// A measure that orders points as the distance does: its square where it is Euclidean.
 template <std::size_t N>
 KOMOREBI_LANE void measure_rows(const VoronoiKind& kind, const VoronoiRow* a, const VoronoiRow* b,
@@ -152,8 +171,7 @@ KOMOREBI_LANE void measure_rows(const VoronoiKind& kind, const VoronoiRow* a, co
       out[i] = most;
     }
   } else {
-    for (std::size_t d = 0; d < N; ++d) add_powers(a[d], b[d], exponent, count, d == 0, out);
-    take_roots(exponent, count, out);
+    minkowski_rows<N>(a, b, exponent, count, out);
   }
 }
 

@@ -157,6 +157,22 @@ TEST(Voronoi, EachLaneAndInstructionSetGivesTheSame) {
   }
 }
 
+// The usual exponent has a loop of its own, which lanes take only together.
+TEST(Voronoi, AnExponentIsTheSameBesideOthers) {
+  const Rows rows;
+  VoronoiRow mixed;
+  for (std::uint32_t i = 0; i < kLanes; ++i) mixed[i] = i % 2 == 0 ? 0.5f : 1.7f;
+  VoronoiKind kind;
+  kind.metric = VoronoiMetric::kMinkowski;
+  VoronoiFound alone, beside;
+  VoronoiRows given = rows.from(0, rows.zero);
+  given.exponent = rows.half;
+  voronoi(kind, given, kLanes, alone);
+  given.exponent = mixed;
+  voronoi(kind, given, kLanes, beside);
+  for (std::uint32_t i = 0; i < kLanes; i += 2) EXPECT_TRUE(same(alone, i, beside, i, 3)) << i;
+}
+
 TEST(Voronoi, RadiusIsHalfTheWayToTheNearestOther) {
   const Rows rows;
   VoronoiRow radius;
