@@ -46,6 +46,7 @@ def small(scene, engine="KOMOREBI", size=(64, 48), samples=4):
     scene.render.resolution_x, scene.render.resolution_y = size
     scene.render.resolution_percentage = 100
     scene.komorebi.samples = samples
+    scene.komorebi.surface = "CLAY"  # what tests of other things have closed forms of
     scene.komorebi.bounces = 0  # light as formulas have it
 
 

@@ -32,9 +32,9 @@ def exported(world=None):
 
 def color_of(data):
     """The even light of a world, which only the core knows."""
-    from komorebi import native_world
+    from komorebi.native_programs import Programs
 
-    return native_world.program(core, data.program).constants
+    return Programs(core).program(data.program).constants
 
 
 def background():
@@ -64,6 +64,8 @@ def test_a_view_layer_without_sky_is_black():
     scene = support.fresh_scene()
     scene.komorebi.method = "WORLD_LIGHT"
     background().inputs["Color"].default_value = (1, 1, 1, 1)
+    for lamp in [o for o in scene.objects if o.type == "LIGHT"]:
+        bpy.data.objects.remove(lamp)
     scene.view_layers[0].use_sky = False
     with support.folder() as folder:
         picture = support.render(folder)

@@ -66,7 +66,8 @@ class _Exporter:
         self._materials = MaterialExporter(
             engine, depsgraph.scene, depsgraph.view_layer, data.materials
         )
-        wanted = replace(wanted, attributes_of=self._materials.attributes_of)
+        asked, materials = wanted.attributes_of, self._materials.attributes_of
+        wanted = replace(wanted, attributes_of=lambda obj: asked(obj) | materials(obj))
         self._shapes = ShapeExporter(engine, depsgraph, data.meshes, wanted, unchanged, deforming)
         self._entries: list[_Entry] = []
         # Of each instance that is taken, in the order of the walk:

@@ -106,13 +106,13 @@ class KOMOREBI_RENDER_PT_surface(KomorebiPanel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         settings = context.scene.komorebi
         self.column().row().prop(settings, "surface", expand=True)
-        if settings.surface == "CLAY":
-            column = self.column()
-            sub = column.column()
-            sub.active = settings.method == "WORLD_LIGHT"
-            sub.prop(settings, "clay_color", text="Color")
-            column.prop(settings, "clay_glass", text="Glass")
-            column.prop(settings, "clay_bump")
+        column = self.column()
+        column.active = settings.surface == "CLAY"
+        sub = column.column()
+        sub.active = settings.method == "WORLD_LIGHT"
+        sub.prop(settings, "clay_color", text="Clay")
+        column.prop(settings, "clay_glass", text="Glass")
+        column.prop(settings, "clay_bump")
 
 
 class KOMOREBI_RENDER_PT_sky(KomorebiPanel, bpy.types.Panel):
@@ -127,11 +127,13 @@ class KOMOREBI_RENDER_PT_sky(KomorebiPanel, bpy.types.Panel):
         settings = context.scene.komorebi
         column = self.column()
         column.prop(settings, "sky", text="Light From")
-        if settings.sky == "STUDIO":
-            column.prop(settings, "sky_studio_light")
-            column.prop(settings, "sky_rotation")
-        if settings.sky != "SCENE":
-            column.prop(settings, "sky_strength")
+        sub = column.column()
+        sub.active = settings.sky == "STUDIO"
+        sub.prop(settings, "sky_studio_light")
+        sub.prop(settings, "sky_rotation")
+        sub = column.column()
+        sub.active = settings.sky != "SCENE"
+        sub.prop(settings, "sky_strength")
 
 
 def draw_method(self: Any, context: Any) -> None:

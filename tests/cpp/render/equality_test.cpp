@@ -259,6 +259,7 @@ void expect_batches_as_one_ray(const std::shared_ptr<Scene>& scene, Settings set
     const auto differs = [&](float value) { return value != expected.front(); };
     if (pass == "Debug Sample Count" || pass == "CryptoObject01") continue;  // the same everywhere
     if (pass == "Environment" && scene->world_is_uniform()) continue;
+    if (pass == "Emission" && scene->tables().surfaces.empty()) continue;  // nothing shines
     if (!scene->has_catchers()) continue;
     EXPECT_TRUE(std::any_of(expected.begin(), expected.end(), differs)) << pass << " is empty";
   }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .compiler import Compiler, Outputs, node
+from .compiler import GREY, Compiler, Outputs, node
 from .texture_inputs import parameter, texture_vector
 
 # native/shader/patterns.h
@@ -68,8 +68,8 @@ def gabor(compiler: Compiler, node: Any) -> Outputs:
 
 @node("TEX_POINTDENSITY")
 def point_density(compiler: Compiler, node: Any) -> Outputs:
-    compiler.warn(node, "not supported, rendered black")
-    return {"Color": (0.0, 0.0, 0.0), "Density": (0.0,)}
+    compiler.warn(node, "not supported, rendered as an even grey")
+    return {"Color": GREY, "Density": (0.5,)}
 
 
 @node("TEX_IES")
