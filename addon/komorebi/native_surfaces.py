@@ -18,7 +18,7 @@ def _surface(programs: Programs, data: SurfaceData) -> tuple[Any, Any, Any]:
     return (
         _programs(programs, data.camera),
         None if data.bounce is None else _programs(programs, data.bounce),
-        None if data.shadow is None else programs.program(data.shadow),
+        None if data.clear is None else programs.program(data.clear),
     )
 
 

@@ -242,13 +242,13 @@ class SurfaceData:
 
     camera: SurfacePrograms
     bounce: SurfacePrograms | None = None  # for rays that bounce light; None: the same
-    shadow: ProgramData | None = None  # transparency to rays that look for light; None: opaque
+    clear: ProgramData | None = None  # transparency to rays that look for light; None: opaque
     notes: set[str] = field(default_factory=set)  # what is rendered as something simpler
 
     def programs(self) -> list[ProgramData]:
         """All that it is made of."""
         surfaces = [self.camera, *([self.bounce] if self.bounce else [])]
-        return [s.program for s in surfaces] + ([self.shadow] if self.shadow else [])
+        return [s.program for s in surfaces] + ([self.clear] if self.clear else [])
 
 
 @dataclass(slots=True)

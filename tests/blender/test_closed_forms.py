@@ -23,6 +23,7 @@ def pictures(folder, name, samples=32, **properties):
     settings = scene.komorebi
     settings.method, settings.pixel_filter = "AMBIENT_OCCLUSION", "BOX"
     settings.samples, settings.ao_distance, settings.bounces = samples, 0.0, 0
+    settings.surface = "CLAY"
     for key, value in properties.items():
         setattr(settings, key, value)
     made = []

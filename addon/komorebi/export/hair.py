@@ -74,7 +74,8 @@ def _render_layer(mesh: Any) -> int:
 
 def _uv_maps(mesh: Any, names: Collection[str]) -> dict[str, int]:
     """Which of the names are UV maps, and their numbers."""
-    maps = {uv.name: i for i, uv in enumerate(mesh.uv_layers) if uv.name in names}
+    by_name = ((UV + uv.name, i) for i, uv in enumerate(mesh.uv_layers))
+    maps = {name: i for name, i in by_name if name in names}
     if UV in names and len(mesh.uv_layers):
         maps[UV] = _render_layer(mesh)
     return dict(sorted(maps.items()))
