@@ -35,9 +35,10 @@ void LightMap::clean(float* p, std::size_t texels) {
     if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]))) {
       p[0] = p[1] = p[2] = 0.0f;
       ++nonfinite_;
-    } else if (p[0] < 0.0f || p[1] < 0.0f || p[2] < 0.0f) {
-      for (int c = 0; c < 3; ++c) p[c] = p[c] < 0.0f ? 0.0f : p[c];
-      ++negative_;
+    } else {
+      if (p[0] < 0.0f || p[1] < 0.0f || p[2] < 0.0f) ++negative_;
+      // −0 too: lanes read numbers without their sign.
+      for (int c = 0; c < 3; ++c) p[c] = p[c] > 0.0f ? p[c] : 0.0f;
     }
     for (int c = 0; c < 3; ++c) max_radiance_ = p[c] > max_radiance_ ? p[c] : max_radiance_;
   }

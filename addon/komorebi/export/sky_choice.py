@@ -41,7 +41,8 @@ def studio_lights() -> dict[str, str]:
         bpy.utils.user_resource("DATAFILES", path=os.path.join("studiolights", "world")),
     ):
         if folder and os.path.isdir(folder):
-            found |= {name: os.path.join(folder, name) for name in sorted(os.listdir(folder))}
+            names = (n for n in sorted(os.listdir(folder)) if n.endswith((".exr", ".hdr")))
+            found |= {name: os.path.join(folder, name) for name in names}
     return found
 
 

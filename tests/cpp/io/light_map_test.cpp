@@ -68,6 +68,16 @@ TEST(LightMap, WidensAsItMust) {
   EXPECT_THROW(LightMap("none", 0, 4), std::invalid_argument);
 }
 
+TEST(LightMap, NegativeZerosHaveNoSign) {
+  LightMap map("m", 2, 1);
+  float texels[] = {1.0009765625f, -0.0f, 2, 0.5f, 1, -0.0f};
+  map.put(0, 1, texels);
+  ASSERT_EQ(map.storage(), LightStorage::kHalf);
+  EXPECT_FALSE(std::signbit(map.texel(0).y));
+  EXPECT_FALSE(std::signbit(map.texel(1).z));
+  EXPECT_EQ(map.negative_texels(), 0u);
+}
+
 TEST(LightMap, FilesAreReadAsReadImageReadsThem) {
   const fs::path folder =
       fs::temp_directory_path() / ("komorebi_maps_" + std::to_string(std::random_device{}()));
