@@ -12,13 +12,14 @@
 namespace komorebi {
 class Mesh;
 class Scene;
-}
+}  // namespace komorebi
 
 namespace komorebi::python {
 
 namespace py = pybind11;
 
 // One function a part of the module, each in a file of its own.
+void bind_environment(py::module_& module);
 void bind_scene(py::module_& module);
 void bind_session(py::module_& module);
 void bind_shader(py::module_& module);

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "render/material_filter.h"
-#include "render/world_program.h"
 
 namespace komorebi {
 namespace {
@@ -152,15 +151,6 @@ void Scene::set_world_environment(std::shared_ptr<const Environment> environment
   texture_from_world_ = texture_from_world;
 }
 
-void Scene::set_world_program(std::shared_ptr<const Program> program, float max_radiance) {
-  require_open();
-  if (program && program->output_count() != 3) {
-    throw std::invalid_argument(program->name() + ": a world has three outputs, its radiance");
-  }
-  world_program_max_ = program ? std::max(max_radiance, brightest(*program)) : 0.0f;
-  world_program_ = std::move(program);
-}
-
 void Scene::set_camera(const CameraDesc& camera) {
   require_open();
   // Refuses what cannot be inverted.
@@ -200,21 +190,6 @@ void Scene::set_tables(SceneTables tables) {
   tables_ = std::move(tables);
 }
 
-void Scene::set_surfaces(std::vector<Material> surfaces, std::vector<float> instance_random) {
-  require_open();
-  if (surfaces.size() != tables_.materials.size()) {
-    throw std::invalid_argument(std::to_string(surfaces.size()) + " surfaces for " +
-                                std::to_string(tables_.materials.size()) + " materials");
-  }
-  for (const Material& material : surfaces) {
-    if (material.camera.program) {
-      emission_max_ = std::max(emission_max_, bound_of_emission(*material.camera.program));
-    }
-  }
-  tables_.surfaces = std::move(surfaces);
-  tables_.instance_random = std::move(instance_random);
-}
-
 EnvironmentView Scene::environment() const {
   return environment_ ? environment_->view(strength_, texture_from_world_)
                       : constant_environment(world_color_);
@@ -223,12 +198,6 @@ EnvironmentView Scene::environment() const {
 StepsView Scene::steps() const {
   return {steps_.data(), instance2steps_.empty() ? nullptr : instance2steps_.data(),
           mesh_steps_.empty() ? nullptr : mesh_steps_.data()};
-}
-
-float Scene::max_radiance() const {
-  const float light = environment_ ? static_cast<float>(strength_) * environment_->max_radiance()
-                                   : max_abs(world_color_);
-  return std::max({light, world_program_max_, emission_max_});
 }
 
 void Scene::place(const InstanceInput& input, std::span<const Mat4d> poses, ThreadPool& pool,

@@ -111,7 +111,8 @@ TEST(Texture, EachTypeGivesItsNumbers) {
   const TextureSampling closest{Interpolation::kClosest, Extension::kRepeat, false};
   const Texture byte("b", texels_of<std::uint8_t>(1, 1, 4, TexelType::kByte, {51, 0, 255, 102}), {},
                      pool);
-  EXPECT_EQ(byte.lookup(closest, 0.5f, 0.5f), Vec4(51 * (1.0f / 255.0f), 0.0f, 1.0f, 102 * (1.0f / 255.0f)));
+  EXPECT_EQ(byte.lookup(closest, 0.5f, 0.5f),
+            Vec4(51 * (1.0f / 255.0f), 0.0f, 1.0f, 102 * (1.0f / 255.0f)));
   const Texture grey("g", texels_of<std::uint16_t>(1, 1, 1, TexelType::kShort, {13107}), {}, pool);
   const Vec4 value = grey.lookup(closest, 0.5f, 0.5f);
   EXPECT_NEAR(value.x, 0.2f, 1e-7f);
