@@ -9,6 +9,7 @@ from common import add_camera, add_rectangle, empty_scene, link, set_world
 from mathutils import Vector
 
 from demo.gate import add_gate, add_lanterns
+from demo.looks import paint
 from demo.scatter import scatter
 from demo.stone import STEP_RISE, STEP_RUN, STEPS, add_banks, add_steps, add_turned, ground_height
 from demo.tree import add_branches, add_leaf, branch_lines, twig_points
@@ -73,6 +74,7 @@ def build() -> None:
     scatter("Bamboo leaves", add_bamboo(rng, stock), blade, 1.2, (0.6, 1.2))
     add_camera((0.55, -5.0, 1.30), (-0.05, 6.0, 3.15), lens=27.0)
     set_world((0.80, 0.88, 1.0))
+    paint()
     scene.render.resolution_percentage = 75
     scene["komorebi"] = {"samples": 64}  # where the add-on keeps its properties: a minute a picture
     scene["studio_light"], scene["studio_light_rotation"] = "sunrise", (45.0, 0.0, 84.0)

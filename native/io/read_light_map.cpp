@@ -22,7 +22,7 @@ class SrgbDecoder {
   }
   float operator()(float x) const {
     if (bytes_ && x >= 0.0f && x <= 1.0f) {
-      const auto i = static_cast<std::size_t>(x * 255.0f + 0.5f);
+      const auto i = static_cast<std::size_t>(std::lround(x * 255.0f));
       if (value_[i] == x) return linear_[i];
     }
     return linear_from_srgb(x);

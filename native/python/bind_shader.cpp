@@ -84,6 +84,7 @@ py::array_t<float> evaluate(const Program& program, std::uint32_t count, const p
   Program::Scratch scratch;
   std::vector<std::vector<float>> rows(program.output_count(), std::vector<float>(Program::kLanes));
   std::vector<float*> out;
+  out.reserve(rows.size());
   for (auto& row : rows) out.push_back(row.data());
   for (std::uint32_t first = 0; first < count; first += Program::kLanes) {
     ShadePoints points;
@@ -92,6 +93,7 @@ py::array_t<float> evaluate(const Program& program, std::uint32_t count, const p
       for (std::size_t c = 0; c < 3; ++c) points.input[k][c] = &columns[places[k][c]][first];
     }
     std::vector<const float*> pointers;
+    pointers.reserve(attribute_places.size());
     for (const std::size_t place : attribute_places) pointers.push_back(&columns[place][first]);
     points.attribute = reinterpret_cast<const float* const(*)[4]>(pointers.data());
     program.run(points, scratch, out.data());
@@ -125,6 +127,7 @@ void bind_shader(py::module_& module) {
       .def(py::init([](std::shared_ptr<Program> program,
                        const std::vector<std::pair<bool, bool>>& lobes) {
              std::vector<SurfaceProgram::LobeInput> inputs;
+             inputs.reserve(lobes.size());
              for (const auto& [transmits, has_normal] : lobes) {
                inputs.push_back({transmits, has_normal});
              }

@@ -114,8 +114,9 @@ class _Exporter:
             self._motion.place(shape, len(self._entry), instance, subject, what)
         self._entry.append(entry)
         self._matrices.add(instance, number)
-        # What is placed before a material asks has none that does.
-        self._random.append(instance.random_id if self._materials.asks_random else 0)
+        # What is placed before a material asks has none that does. Blender's 32 bits have a sign.
+        asks = self._materials.asks_random
+        self._random.append(instance.random_id & 0xFFFFFFFF if asks else 0)
         if self._visibility.matters:
             mask, flags = self._visibility.of(instance, subject.original)
             self._masks.append(mask)
