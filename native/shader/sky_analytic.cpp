@@ -46,7 +46,8 @@ struct HosekPlace {
 
 // Preetham et al., appendix A.2. Luminance is 0.06 of theirs, in kcd/m², as in Cycles.
 std::vector<float> preetham_numbers(const SkyDesc& sky) {
-  const auto [theta, phi] = sun_angles(sky);
+  const SunAngles angles = sun_angles(sky);
+  const float theta = angles.theta, phi = angles.phi;
   const float t = sky.turbidity;
   const float chi = (4.0f / 9.0f - t / 120.0f) * (kPiFloat - 2.0f * theta);
   const auto chromaticity = [&](const float(&c)[11]) {

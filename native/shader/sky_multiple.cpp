@@ -256,7 +256,7 @@ std::vector<float> multiple_scattering_table(const SkyDesc& sky, ThreadPool& poo
   pool.for_each_chunk(kRows, 2, [&](std::size_t begin, std::size_t end) {
     Marcher marcher(sky, atmosphere, transmittances);
     for (std::size_t y = begin; y < end; ++y) {
-      const double up = (static_cast<double>(y) + 0.5) / (kRows / 2) - 1.0;
+      const double up = (static_cast<double>(y) + 0.5) / (0.5 * kRows) - 1.0;
       const double elevation = 0.5 * kPi * up * up;
       marcher.row(up < 0.0 ? -elevation : elevation, &table[3 * kSkyColumns * y]);
     }

@@ -27,7 +27,7 @@
     voronoi_##name<N>(kind, rows, count, out);                                                   \
   }
 #define KOMOREBI_VORONOI_OF(name) \
-  { &name<1>, &name<2>, &name<3>, &name<4> }
+  { &name<1>, &name<2>, &name<3>, &name<4> }  // NOLINT(bugprone-macro-parentheses)
 #define KOMOREBI_VORONOI_FUNCTIONS        \
   KOMOREBI_VORONOI_FIND(nearest)          \
   KOMOREBI_VORONOI_FIND(second)           \
