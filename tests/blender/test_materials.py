@@ -246,3 +246,37 @@ def test_the_sun_of_a_sky_lights_as_in_cycles(folder):
     cycles.use_adaptive_sampling = False
     theirs = seen(folder, "cycles")[:3]
     assert np.allclose(ours, theirs, rtol=0.02), (ours, theirs)
+
+
+def test_displacement_is_relief_as_in_cycles(folder):
+    """A ball bumped by its material's displacement, under a sky that is brighter on one side."""
+    scene = plate(size=(64, 64))
+    bpy.data.objects.remove(bpy.context.object)
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32)
+    bpy.ops.object.shade_smooth()
+    look = material(diffuse((0.8, 0.8, 0.8, 1.0)))
+    tree = look.node_tree
+    noise = node(tree, "TexNoise", Scale=5.0)
+    height = node(tree, "Displacement", Height=noise.outputs[0], Scale=0.3)
+    output = next(n for n in tree.nodes if n.type == "OUTPUT_MATERIAL")
+    tree.links.new(height.outputs[0], output.inputs["Displacement"])
+    bpy.context.object.data.materials.append(look)
+    sky = scene.world.node_tree
+    gradient = sky.nodes.new("ShaderNodeTexGradient")
+    sky.links.new(gradient.outputs[0], sky.nodes["Background"].inputs["Color"])
+    scene.komorebi.samples, scene.komorebi.pixel_filter = 64, "BOX"
+    ours = support.render(folder)[16:48, 16:48, 0]
+    tree.links.remove(output.inputs["Displacement"].links[0])
+    flat = support.render(folder, "flat")[16:48, 16:48, 0]
+    tree.links.new(height.outputs[0], output.inputs["Displacement"])
+    scene.render.engine = "CYCLES"
+    cycles = scene.cycles
+    cycles.samples, cycles.max_bounces, cycles.use_denoising = 256, 0, False
+    cycles.use_adaptive_sampling, cycles.pixel_filter_type = False, "BOX"
+    theirs = support.render(folder, "cycles")[16:48, 16:48, 0]
+
+    def blocks(picture):
+        return picture.reshape(8, 4, 8, 4).mean(axis=(1, 3))
+
+    assert np.abs(blocks(ours) - blocks(theirs)).mean() < 0.01
+    assert np.abs(blocks(flat) - blocks(theirs)).mean() > 0.02

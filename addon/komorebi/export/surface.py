@@ -12,6 +12,7 @@ from .names import name_of
 from .shader import Compiler, Ray
 from .shader.closures import BLACK, Closures, total
 from .shader.compiler import NOWHERE
+from .shader.nodes_displacement import relief
 from .shader.values import Builder
 from .surroundings import Surroundings
 
@@ -70,6 +71,8 @@ def export_surface(
         reporting.warn(
             engine, f"{owner} shines, but its light on other surfaces is not rendered yet"
         )
+    if compat.displaces(material) and nodes.source(output.inputs["Displacement"]) is not None:
+        reporting.warn(engine, f"{owner}: displacement is rendered as relief, nothing moves")
     shadow = Compiler(engine, owner, Ray("SHADOW"), surroundings=around)
     clear = _transparency(shadow, _closures(shadow, output), look)
     return SurfaceData(
@@ -123,7 +126,7 @@ def _surface(compiler: Compiler, output: Any, look: Look) -> SurfacePrograms:
     emission = BLACK
     if look.clay is None and look.has_light:
         emission = total(b, closures or (), "EMISSION")
-    lobes = _lobes(compiler, closures or (), look)
+    lobes = _lobes(compiler, closures or (), look, relief(compiler, output.inputs["Displacement"]))
     if look.clay is not None or not look.has_light:
         solid = b.subtract((1.0,), b.add(clear, hole))
         color = look.clay if look.clay is not None else WHITE
@@ -138,15 +141,16 @@ def _surface(compiler: Compiler, output: Any, look: Look) -> SurfacePrograms:
 
 
 def _lobes(
-    compiler: Compiler, closures: Closures, look: Look
+    compiler: Compiler, closures: Closures, look: Look, raised: Value | None
 ) -> dict[tuple[bool, Value | None], Value]:
-    """Weights by side and normal: what agrees in both adds up."""
+    """Weights by side and normal: what agrees in both adds up. `raised` is the normal of what has
+    none of its own."""
     b: Builder = compiler.builder
     lobes: dict[tuple[bool, Value | None], Value] = {}
     for closure in closures:
         if closure.kind not in {"DIFFUSE", "TRANSLUCENT"}:
             continue
-        normal = closure.normal if look.keeps_bump else None
+        normal = closure.normal or raised if look.keeps_bump else None
         key = (closure.kind == "TRANSLUCENT", normal)
         if key not in lobes and len(lobes) == MOST_LOBES:
             key = next((k for k in lobes if k[0] == key[0]), next(iter(lobes)))

@@ -5,6 +5,7 @@ from . import (  # noqa: F401  they register functions of nodes
     nodes_color,
     nodes_coordinates,
     nodes_curves,
+    nodes_displacement,
     nodes_image,
     nodes_math,
     nodes_noise,
