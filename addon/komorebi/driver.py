@@ -58,6 +58,7 @@ class Frame:
     scene: SceneData
     views: list[View]
     mattes: dict[str, list[str]]  # names in each Cryptomatte
+    exposure: float = 1.0  # of the film
 
 
 def export_frame(engine: Any, depsgraph: Any) -> Frame | None:
@@ -81,7 +82,9 @@ def export_frame(engine: Any, depsgraph: Any) -> Frame | None:
     data = export_scene(engine, depsgraph, names, settings["passes"], unchanged)
     views = [View(name, camera) for name, camera in data.cameras.items()]
     mattes = _matte_names(data, enabled_cryptomattes(depsgraph.view_layer))
-    return Frame(layer, region, passes, settings, oidn, data, views, mattes)
+    # Ambient occlusion is no light.
+    exposure = scene.komorebi.film_exposure if settings["method"] == "WORLD_LIGHT" else 1.0
+    return Frame(layer, region, passes, settings, oidn, data, views, mattes, exposure)
 
 
 def _unchanged(engine: Any, depsgraph: Any) -> Unchanged:
@@ -172,7 +175,9 @@ def _render_view(engine: Any, frame: Frame, parts: native_scene.Parts, view: Vie
     if dump.write(scene, settings):
         return
     session = _native_work(engine, cancel, lambda: native.Session(scene, settings))
-    writer = ResultWriter(engine, frame.layer, view.name, frame.region, frame.passes)
+    writer = ResultWriter(
+        engine, frame.layer, view.name, frame.region, frame.passes, frame.exposure
+    )
     _run_session(engine, session, writer, progress, frame)
 
 

@@ -181,6 +181,10 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         name="Environment Sampling", description="How rays towards the world are chosen",
         items=ENVIRONMENT_SAMPLINGS, default="PRODUCT",
     )  # fmt: skip
+    film_exposure: FloatProperty(
+        name="Exposure", description="Brightness of the picture under World Light",
+        default=1.0, min=0.0, max=10.0,
+    )  # fmt: skip
     pixel_filter: EnumProperty(
         name="Filter", description="How samples around a pixel's centre are weighted",
         items=PIXEL_FILTERS, default="BLACKMAN_HARRIS",

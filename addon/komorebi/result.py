@@ -17,6 +17,8 @@ from .scene_data import FloatArray
 Tile = tuple[int, int, int, int]
 Fields = dict[str, str]
 
+# The core's passes that are light, and so scaled by the film's exposure.
+EXPOSED = {"Combined", "Environment", "Emission"}
 BAND_PIXELS = 1 << 23
 DUTY = 10.0  # showing tiles may take a tenth of the time
 
@@ -25,11 +27,13 @@ class ResultWriter:
     """Writes one view of one view layer; tiles are relative to the region."""
 
     def __init__(
-        self, engine: Any, layer: str, view: str, region: Region, passes: list[Pass]
-    ) -> None:
+        self, engine: Any, layer: str, view: str, region: Region, passes: list[Pass],
+        exposure: float = 1.0,
+    ) -> None:  # fmt: skip
         self._engine = engine
         self._layer, self._view = layer, view
         self._passes = passes
+        self._exposure = np.float32(exposure)  # of the film
         self._width, self._height = region[2] - region[0], region[3] - region[1]
         self._pending: set[Tile] = set()
         self._next = 0.0
@@ -84,9 +88,17 @@ class ResultWriter:
                 if target is None:
                     continue
                 if combined is not None and p.name == "Combined":
-                    compat.set_rect(target, combined)
+                    compat.set_rect(target, self._exposed(p, combined))
                 elif p.is_read:  # else Blender's zeros stay
-                    pixels = session.read(p.source, x, y, width, height)
+                    pixels = self._exposed(p, session.read(p.source, x, y, width, height))
                     compat.set_rect(target, np.broadcast_to(pixels, (height, width, p.channels)))
         finally:
             self._engine.end_result(result)
+
+    def _exposed(self, p: Pass, pixels: FloatArray) -> FloatArray:
+        """Light as the film's exposure shows it; alpha stays."""
+        if self._exposure == 1.0 or p.source not in EXPOSED:
+            return pixels
+        shown = pixels.copy()
+        shown[:, :, :3] *= self._exposure
+        return shown

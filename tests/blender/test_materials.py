@@ -280,3 +280,11 @@ def test_displacement_is_relief_as_in_cycles(folder):
 
     assert np.abs(blocks(ours) - blocks(theirs)).mean() < 0.01
     assert np.abs(blocks(flat) - blocks(theirs)).mean() > 0.02
+
+
+def test_exposure_scales_light_and_not_alpha(folder):
+    scene = plate(diffuse((0.2, 0.5, 0.8, 1.0)))
+    scene.komorebi.film_exposure = 2.5
+    assert np.allclose(seen(folder), (0.5, 1.25, 2.0, 1.0), atol=1e-4)
+    scene.komorebi.method = "AMBIENT_OCCLUSION"
+    assert np.allclose(seen(folder), 1.0, atol=1e-4)

@@ -129,7 +129,11 @@ class KOMOREBI_RENDER_PT_film(KomorebiPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Any) -> None:
-        self.column().prop(context.scene.render, "film_transparent", text="Transparent")
+        column = self.column()
+        sub = column.column()
+        sub.active = context.scene.komorebi.method == "WORLD_LIGHT"
+        sub.prop(context.scene.komorebi, "film_exposure")
+        column.prop(context.scene.render, "film_transparent", text="Transparent")
 
 
 class KOMOREBI_RENDER_PT_film_pixel_filter(KomorebiPanel, bpy.types.Panel):

@@ -106,6 +106,8 @@ def set_komorebi(scene: Any, samples: int, mode: str, bounces: int, materials: b
     require(scene.komorebi, environment_sampling="MIS", pixel_filter="BOX", use_progressive=True)
     settle_all(
         scene.komorebi,
+        film_exposure=1.0,
+        sky="SCENE",
         surface="MATERIAL" if materials else "CLAY",
         use_adaptive_sampling=False,
         time_limit=0.0,
