@@ -13,10 +13,10 @@ FAST_GI = "light bounces, or does not: there is no approximation of it"
 VIEWPORT = "there is no rendered view in the viewport"
 BAKING = "there is no baking"
 PREVIEWS = "previews are not rendered"
-MATERIALS = "materials are not evaluated"
+MATERIALS = "displacement is always relief, and surfaces that shine light nothing else yet"
 COPY = "a copy for the node editor of what the properties editor shows"
 DEBUG = "for developers of Cycles"
-LIGHT_GROUPS = "there are no light groups: all light is the world's"
+LIGHT_GROUPS = "there are no light groups: all light is in one picture"
 
 # Cycles' class (or function that it appends to one of Blender's) → ours.
 REPLACED = {
