@@ -246,16 +246,6 @@ def has_overscan(scene: Any) -> bool:
     return bool(getattr(scene.eevee, "use_overscan", False))
 
 
-def displaces(material: Any) -> bool:
-    """Whether Cycles moves what a material's displacement moves: its setting up to 4.0, then
-    Blender's own."""
-    for owner in (material, cycles_or(material, None)):
-        method = getattr(owner, "displacement_method", None)
-        if method is not None:
-            return bool(method != "BUMP")
-    return False
-
-
 def shader_nodes(owner: Any) -> Any | None:
     """The node tree that a world or material uses, or None (from 5.0 each has one)."""
     if VERSION < (5, 0, 0) and not owner.use_nodes:

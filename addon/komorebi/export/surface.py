@@ -71,7 +71,7 @@ def export_surface(
         reporting.warn(
             engine, f"{owner} shines, but its light on other surfaces is not rendered yet"
         )
-    if compat.displaces(material) and nodes.source(output.inputs["Displacement"]) is not None:
+    if _displaces(material) and nodes.source(output.inputs["Displacement"]) is not None:
         reporting.warn(engine, f"{owner}: displacement is rendered as relief, nothing moves")
     shadow = Compiler(engine, owner, Ray("SHADOW"), surroundings=around)
     clear = _transparency(shadow, _closures(shadow, output), look)
@@ -81,6 +81,16 @@ def export_surface(
         ProgramData(owner, shadow.builder.ops, clear) if any(clear) else None,
         compilers["CAMERA"].notes if look.clay is None else set(),
     )
+
+
+def _displaces(material: Any) -> bool:
+    """Whether Cycles moves what a material's displacement moves: its setting up to 4.0, then
+    Blender's own."""
+    for owner in (material, compat.cycles_or(material, None)):
+        method = getattr(owner, "displacement_method", None)
+        if method is not None:
+            return bool(method != "BUMP")
+    return False
 
 
 def _without_clay(look: Look) -> Look:
