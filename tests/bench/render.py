@@ -68,6 +68,8 @@ def render(
         "height": size[1],
         "views": views,
         "bounces": scene.bounces,
+        "lamps": False,
+        "materials": False,
         "cycles": {},
         "komorebi": {},
         engine.lower(): settings or {},

@@ -181,8 +181,8 @@ def test_each_warning_once_an_animation_and_a_count(folder):
     support.add_object("Smoke", bpy.data.volumes.new("Smoke"))
     tree = scene.world.node_tree
     background = next(n for n in tree.nodes if n.type == "BACKGROUND")
-    noise = tree.nodes.new("ShaderNodeTexNoise")
-    tree.links.new(noise.outputs["Color"], background.inputs["Color"])
+    bevel = tree.nodes.new("ShaderNodeBevel")
+    tree.links.new(bevel.outputs["Normal"], background.inputs["Color"])
     scene.frame_end = 3
     file = support.save(folder)
     output = folder / "picture_"
@@ -195,8 +195,9 @@ def test_each_warning_once_an_animation_and_a_count(folder):
         ])  # fmt: skip
     assert done.code == 0 and len(support.pictures(folder)) == 3, done
     assert done.output.count("is a volume, not rendered yet") == 1, done
-    assert done.output.count("not supported yet") == 1, done
-    assert "Komorebi: 2 warnings, 6 times in 3 frames" in done.output, done
+    assert done.output.count("bevels are not rendered") == 1, done
+    # The world's nodes are read for what is seen and for what lights.
+    assert "Komorebi: 2 warnings, 9 times in 3 frames" in done.output, done
 
 
 def test_threads_of_the_command_line(folder):
