@@ -28,6 +28,7 @@ ELSEWHERE = {
     "compositing_node_group": "the compositor's header, from 5.0",
     "focus_subtarget": "drawn where the focus object is an armature",
     "feature_set": "read to say that adaptive subdivision is ignored",
+    "displacement_method": "read to say that nothing is displaced",
     **dict.fromkeys(("fps", "fps_base"), "drawn where the rate is none of Blender's list"),
     "frame_current": "the timeline",
     "frame_subframe": "the timeline, where its menu shows it",
