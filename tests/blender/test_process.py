@@ -196,8 +196,7 @@ def test_each_warning_once_an_animation_and_a_count(folder):
     assert done.code == 0 and len(support.pictures(folder)) == 3, done
     assert done.output.count("is a volume, not rendered yet") == 1, done
     assert done.output.count("bevels are not rendered") == 1, done
-    # The world's nodes are read for what is seen and for what lights.
-    assert "Komorebi: 2 warnings, 9 times in 3 frames" in done.output, done
+    assert "Komorebi: 2 warnings, 6 times in 3 frames" in done.output, done
 
 
 def test_threads_of_the_command_line(folder):

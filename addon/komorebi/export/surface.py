@@ -63,22 +63,30 @@ def export_surface(
     owner = f'material "{name_of(material)}"'
     compilers = {
         kind: Compiler(engine, owner, Ray(kind), surroundings=around)
-        for kind in ("CAMERA", "DIFFUSE")
+        for kind in ("CAMERA", "DIFFUSE", "SHADOW")
     }
     camera = _surface(compilers["CAMERA"], output, look)
-    bounce = _surface(compilers["DIFFUSE"], output, look.later or look)
+    ops, clear = camera.program.ops, camera.program.outputs[3:6]
+    heeds_ray = compilers["CAMERA"].heeds_ray
+    bounce = None
+    if heeds_ray or look.later is not None:
+        bounce = _surface(compilers["DIFFUSE"], output, look.later or look)
+        if bounce.program.key() == camera.program.key():
+            bounce = None
+    if heeds_ray:
+        shadow = compilers["SHADOW"]
+        clear = _transparency(shadow, _closures(shadow, output), look)
+        ops = shadow.builder.ops
     if camera.program.outputs[:3] != BLACK:
         reporting.warn(
             engine, f"{owner} shines, but its light on other surfaces is not rendered yet"
         )
     if _displaces(material) and nodes.source(output.inputs["Displacement"]) is not None:
         reporting.warn(engine, f"{owner}: displacement is rendered as relief, nothing moves")
-    shadow = Compiler(engine, owner, Ray("SHADOW"), surroundings=around)
-    clear = _transparency(shadow, _closures(shadow, output), look)
     return SurfaceData(
         camera,
-        None if bounce.program.key() == camera.program.key() else bounce,
-        ProgramData(owner, shadow.builder.ops, clear) if any(clear) else None,
+        bounce,
+        ProgramData(owner, ops, clear) if any(clear) else None,
         compilers["CAMERA"].notes if look.clay is None else set(),
     )
 

@@ -65,9 +65,10 @@ class _WorldReader:
         if data is None:
             program = self._program(light, surface)
             data = WorldData(program=program, program_size=light.map_size)
-            data.camera_program = self._program(camera, surface)
+            shown = self._program(camera, surface) if light.heeds_ray else program
+            data.camera_program = shown
             data.suns = [self._sun(i, sun, surface) for i, sun in enumerate(light.suns)]
-        elif not _same_map(data, read_map(camera, surface)):
+        elif light.heeds_ray and not _same_map(data, read_map(camera, surface)):
             data.camera_program = self._program(camera, surface)
         if not lights and seen and data.camera_program is None:
             data.camera_program = self._program(camera, surface)

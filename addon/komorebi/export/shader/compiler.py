@@ -61,7 +61,8 @@ class Compiler:
         surroundings: Surroundings = NOWHERE,
     ) -> None:
         self.builder = Builder()
-        self.ray = ray
+        self._ray = ray
+        self.heeds_ray = False  # whether another kind of ray would be answered otherwise
         self.is_world = is_world
         self.frame = surroundings.frame  # of the scene, for sequences of pictures
         self.owner = owner  # how warnings begin: world "World"
@@ -79,6 +80,12 @@ class Compiler:
         self._open: set[tuple[Any, ...]] = set()  # nodes that are being compiled: a cycle meets one
 
     # What functions of nodes call.
+
+    @property
+    def ray(self) -> Ray:
+        """The kind of ray; whoever asks makes the outcome depend on it."""
+        self.heeds_ray = True
+        return self._ray
 
     def warn(self, node: Any, what: str) -> None:
         label = node.bl_label or node.type
