@@ -6,6 +6,7 @@ World space is Blender's: metres, Z up. Rows run bottom-up, colours are scene-li
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from hashlib import sha256
 from typing import Any
 
 import numpy as np
@@ -212,8 +213,11 @@ class ProgramData:
     def key(self) -> bytes:
         """The same for programs that do the same."""
         said = [
-            (o.op, o.operands, o.numbers, b"" if o.table is None else o.table.tobytes(), o.name,
-             None if o.texture is None else o.texture.key)
+            (
+                o.op, o.operands, o.numbers,
+                b"" if o.table is None else sha256(o.table.tobytes()).digest(), o.name,
+                None if o.texture is None else o.texture.key,
+            )
             for o in self.ops
         ]  # fmt: skip
         return repr((said, self.outputs)).encode()
