@@ -42,9 +42,8 @@ def images(data: SceneData) -> list[TextureImage]:
 
 
 def _programs(data: SceneData) -> Iterator[ProgramData]:
-    for program in (data.world.program, data.world.camera_program):
+    for program in (data.world.program, data.world.camera_program, data.world_values):
         if program is not None:
             yield program
     for material in data.materials.materials:
-        if material.surface is not None:
-            yield from material.surface.programs()
+        yield from material.programs()

@@ -67,7 +67,7 @@ def build(
             mask=group.mask, flags=group.flags, material_slots=group.material_slots,
             name=group.name, motion=group.motion,
         )  # fmt: skip
-    scene.set_tables(**tables(data))
+    scene.set_tables(**tables(data), **native_surfaces.values(parts.programs, data))
     scene.set_surfaces(
         native_surfaces.surfaces(parts.programs, data.materials), _random(data.instances)
     )
@@ -114,9 +114,6 @@ def tables(data: SceneData) -> dict[str, Any]:
         "material_pass_index": np.array([m.pass_index for m in materials], np.float32),
         "material_mattes": np.array([name_id(m.name) for m in materials], np.uint32).view(
             np.float32
-        ),
-        "material_values": np.array([m.values for m in materials], np.float32).reshape(
-            len(materials), -1 if materials else 0
         ),
         "slot_begin": np.cumsum([0, *map(len, slots)], dtype=np.uint32),
         "object_colors": np.array([o.color for o in data.objects], np.float32).reshape(-1, 4),

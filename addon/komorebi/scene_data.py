@@ -340,8 +340,13 @@ class MaterialData:
 
     name: str
     pass_index: int
-    values: list[float] = field(default_factory=list)  # passes.value_columns
     surface: SurfaceData | None = None
+    values: ProgramData | None = None  # an output for each of passes.value_columns; None: all 0
+
+    def programs(self) -> list[ProgramData]:
+        """All that are run at its surfaces."""
+        of_surface = [] if self.surface is None else self.surface.programs()
+        return of_surface + ([self.values] if self.values else [])
 
 
 @dataclass(slots=True)
@@ -350,6 +355,7 @@ class Materials:
 
     materials: list[MaterialData] = field(default_factory=list)
     slots: list[tuple[int, ...]] = field(default_factory=list)  # indices of materials
+    value_count: int = 0  # outputs of MaterialData.values
 
 
 @dataclass(slots=True)
@@ -363,6 +369,7 @@ class SceneData:
     objects: list[ObjectData] = field(default_factory=list)
     lamps: list[LampData] = field(default_factory=list)
     materials: Materials = field(default_factory=Materials)
+    world_values: ProgramData | None = None  # as MaterialData.values, where there is only world
     texture_limit: int = 1 << 30  # bytes of all textures together
     ignored: dict[str, int] = field(default_factory=dict)  # kind of object → how many
 

@@ -142,11 +142,23 @@ void set_world_environment(Scene& scene, std::shared_ptr<const Environment> envi
   scene.set_world_environment(std::move(environment), strength, rotation);
 }
 
+/// What shader AOVs say, as a program; null where nothing is given.
+std::shared_ptr<const Program> values_program(const py::handle& given, std::uint32_t count) {
+  if (given.is_none()) return nullptr;
+  auto program = given.cast<std::shared_ptr<Program>>();
+  if (program->output_count() != count) {
+    throw std::invalid_argument(program->name() + ": a program of values has as many outputs as " +
+                                "material_values has columns");
+  }
+  return program;
+}
+
 void set_tables(Scene& scene, const py::object& object_pass_index, const py::object& object_mattes,
                 const py::object& object_terminators, const py::object& material_pass_index,
                 const py::object& material_mattes, const py::object& slot_begin,
                 const py::object& slots, const py::object& material_values,
-                const py::object& object_colors) {
+                const py::object& object_colors, const py::object& value_programs,
+                const py::object& world_values) {
   const auto object_index = view<float>(object_pass_index, "object_pass_index", {-1});
   const auto objects = static_cast<py::ssize_t>(object_index.size());
   const auto object_ids = view<float>(object_mattes, "object_mattes", {objects, 2});
@@ -174,6 +186,15 @@ void set_tables(Scene& scene, const py::object& object_pass_index, const py::obj
   if (materials > 0) {
     tables.value_count = static_cast<std::uint32_t>(values.size() / material_index.size());
   }
+  if (!value_programs.is_none()) {
+    for (const py::handle& item : value_programs.cast<py::list>()) {
+      tables.value_programs.push_back(values_program(item, tables.value_count));
+    }
+    if (tables.value_programs.size() != material_index.size()) {
+      throw std::invalid_argument("value_programs: as many as materials");
+    }
+  }
+  tables.world_values = values_program(world_values, tables.value_count);
   tables.slot_begin.assign(begin.begin(), begin.end());
   tables.slots.assign(entries.begin(), entries.end());
   scene.set_tables(std::move(tables));
@@ -295,6 +316,7 @@ void bind_scene(py::module_& module) {
            py::arg("object_mattes"), py::arg("object_terminators"), py::arg("material_pass_index"),
            py::arg("material_mattes"), py::arg("slot_begin"), py::arg("slots"),
            py::arg("material_values") = py::none(), py::arg("object_colors") = py::none(),
+           py::arg("value_programs") = py::none(), py::arg("world_values") = py::none(),
            "What passes tell of objects and materials. Pass indices and Cryptomatte ids: float32 "
            "[N], object_mattes [N, 2] of object and asset. object_terminators: float32 [N, 2], "
            "Blender's shadow_terminator_geometry_offset and the shading one, 0 to 1. List l of "
@@ -302,7 +324,9 @@ void bind_scene(py::module_& module) {
            "slots[slot_begin[l]:slot_begin[l + 1]], indices of materials; uint32 both. "
            "material_values: float32 [N, K], what holds all over a material; the pass \"Material "
            "Value f n\" shows n (1 to 4) of them from number f on. object_colors: float32 [N, 4], "
-           "Blender's Object.color, for nodes that ask for it.")
+           "Blender's Object.color, for nodes that ask for it. value_programs: a list of N, None or "
+           "the Program whose K outputs are what varies over a material; world_values: likewise "
+           "that of the world, where there is nothing else.")
       .def("set_surfaces", &set_surfaces, py::arg("surfaces"),
            py::arg("instance_random") = py::none(),
            "Of each material of set_tables (SurfaceProgram to camera rays, SurfaceProgram to rays "

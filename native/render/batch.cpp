@@ -132,6 +132,7 @@ void BatchIntegrator::shade() {
     put_surface(context_, hits_[path], rays[path], surfaces_.normal(s), surfaces_.depth(s), shading,
                 paths_[path].sample, row(path));
   }
+  values_.put(context_, rays, hits_.data(), [this](std::uint32_t i) { return row(i); });
 }
 
 bool BatchIntegrator::light(const Cancel& cancel) {

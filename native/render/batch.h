@@ -11,6 +11,7 @@
 #include "render/film.h"
 #include "render/lamp_caster.h"
 #include "render/light_caster.h"
+#include "render/material_values.h"
 #include "render/ray_batch.h"
 #include "render/shade.h"
 #include "render/surface_batch.h"
@@ -81,6 +82,7 @@ class BatchIntegrator {
   std::vector<Hit> hits_;
   SurfaceBatch surfaces_;
   BatchShader shader_;
+  MaterialValues values_;
   std::vector<PixelSample> results_;
   std::vector<float> rows_;  // [paths][context_.passes.size()]
   AmbientPasses of_light_;   // passes that light rays fill

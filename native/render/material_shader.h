@@ -3,7 +3,7 @@
 #include <span>
 
 #include "render/material.h"
-#include "render/material_points.h"
+#include "render/material_run.h"
 
 namespace komorebi {
 
@@ -20,13 +20,7 @@ class MaterialShader {
                     const ShadeTask* tasks, std::uint32_t count, float* shares);
 
  private:
-  void run(const RenderContext& context, const Program& program, const ShadeTask* tasks,
-           std::uint32_t count);
-
-  MaterialPoints points_;
-  Program::Scratch scratch_;
-  std::vector<float> results_;  // [outputs][kLanes]
-  std::vector<float*> rows_;
+  MaterialRun run_;
 };
 
 }  // namespace komorebi

@@ -4,6 +4,7 @@
 #include "core/path_key.h"
 #include "render/ambient.h"
 #include "render/light.h"
+#include "render/material_values.h"
 #include "render/one_lamp_ray.h"
 #include "render/pass_row.h"
 #include "render/scatter.h"
@@ -39,6 +40,7 @@ PixelSample missed(const RenderContext& context, const Vec3& direction, float t_
   if (has_ray(t_max)) {
     result = background(context, direction);
     put_environment(context, direction, row);
+    put_world_values(context, direction, row);
   } else {
     result.alpha = 1.0f;
   }
@@ -144,6 +146,7 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
   if (is_holdout(context, hit)) {
     const PixelSample hole;
     put_values(context, hit, row);
+    MaterialValues().put_one(context, hit, ray, row);
     put_matte(layout, hole, row);
     return hole;
   }
@@ -154,6 +157,7 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
       shade_surface(context, shader, hit, ray, sampler.pixel_seed, sample, 0, point);
   put_surface(context, hit, ray, point.normal, camera_depth(context.camera, point.position),
               shading, sample, row);
+  MaterialValues().put_one(context, hit, ray, row);
   PixelSample result;
   result.alpha = 1.0f - shading.holdout;
   const AmbientPasses of_light = passes_of_light_rays(context);
