@@ -312,21 +312,22 @@ void bind_scene(py::module_& module) {
            "flags, material_slots (which list of set_tables): uint32 [N]. motion: the same at an "
            "odd number of even times from the opening of the shutter to the closing, float64 "
            "[N, 2k + 1, 4, 4], of which matrices are the middle ones exactly.")
-      .def("set_tables", &set_tables, py::kw_only(), py::arg("object_pass_index"),
-           py::arg("object_mattes"), py::arg("object_terminators"), py::arg("material_pass_index"),
-           py::arg("material_mattes"), py::arg("slot_begin"), py::arg("slots"),
-           py::arg("material_values") = py::none(), py::arg("object_colors") = py::none(),
-           py::arg("value_programs") = py::none(), py::arg("world_values") = py::none(),
-           "What passes tell of objects and materials. Pass indices and Cryptomatte ids: float32 "
-           "[N], object_mattes [N, 2] of object and asset. object_terminators: float32 [N, 2], "
-           "Blender's shadow_terminator_geometry_offset and the shading one, 0 to 1. List l of "
-           "material slots is "
-           "slots[slot_begin[l]:slot_begin[l + 1]], indices of materials; uint32 both. "
-           "material_values: float32 [N, K], what holds all over a material; the pass \"Material "
-           "Value f n\" shows n (1 to 4) of them from number f on. object_colors: float32 [N, 4], "
-           "Blender's Object.color, for nodes that ask for it. value_programs: a list of N, None or "
-           "the Program whose K outputs are what varies over a material; world_values: likewise "
-           "that of the world, where there is nothing else.")
+      .def(
+          "set_tables", &set_tables, py::kw_only(), py::arg("object_pass_index"),
+          py::arg("object_mattes"), py::arg("object_terminators"), py::arg("material_pass_index"),
+          py::arg("material_mattes"), py::arg("slot_begin"), py::arg("slots"),
+          py::arg("material_values") = py::none(), py::arg("object_colors") = py::none(),
+          py::arg("value_programs") = py::none(), py::arg("world_values") = py::none(),
+          "What passes tell of objects and materials. Pass indices and Cryptomatte ids: float32 "
+          "[N], object_mattes [N, 2] of object and asset. object_terminators: float32 [N, 2], "
+          "Blender's shadow_terminator_geometry_offset and the shading one, 0 to 1. List l of "
+          "material slots is "
+          "slots[slot_begin[l]:slot_begin[l + 1]], indices of materials; uint32 both. "
+          "material_values: float32 [N, K], what holds all over a material; the pass \"Material "
+          "Value f n\" shows n (1 to 4) of them from number f on. object_colors: float32 [N, 4], "
+          "Blender's Object.color, for nodes that ask for it. value_programs: a list of N, None or "
+          "the Program whose K outputs are what varies over a material; world_values: likewise "
+          "that of the world, where there is nothing else.")
       .def("set_surfaces", &set_surfaces, py::arg("surfaces"),
            py::arg("instance_random") = py::none(),
            "Of each material of set_tables (SurfaceProgram to camera rays, SurfaceProgram to rays "

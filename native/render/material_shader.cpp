@@ -83,8 +83,8 @@ void MaterialShader::shade(const RenderContext& context, std::span<ShadeTask> ta
       begin = end;
       continue;
     }
-    float* const* rows = run_.run(context, *surface.program, &tasks[begin],
-                                  static_cast<std::uint32_t>(end - begin));
+    float* const* rows =
+        run_.run(context, *surface.program, &tasks[begin], static_cast<std::uint32_t>(end - begin));
     for (std::size_t i = begin; i < end; ++i) {
       ShadeTask& task = tasks[i];
       const bool draws = surface.lobes.size() > 1;

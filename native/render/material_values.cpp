@@ -15,8 +15,7 @@ bool varies(const RenderContext& context) {
 
 }  // namespace
 
-void MaterialValues::add(const RenderContext& context, const Hit& hit, const Ray& ray,
-                         float* row) {
+void MaterialValues::add(const RenderContext& context, const Hit& hit, const Ray& ray, float* row) {
   // Programs of values draw no lots: they need not know which sample it is.
   const SurfacePoint point = surface_point(context.scene, hit, ray);
   const ShadeTask task = shade_task(context, hit, point, ray.direction, ray.time, 0, 0, 0);

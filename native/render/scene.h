@@ -129,6 +129,7 @@ class Scene {
   double world_strength() const { return strength_; }
   const Mat3d& texture_from_world() const { return texture_from_world_; }
   const Program* world_program() const { return world_program_.get(); }
+  float world_program_max() const { return world_program_max_; }
 
  private:
   void require_open() const;

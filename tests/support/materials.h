@@ -32,6 +32,14 @@ class MadeProgram {
     return out;
   }
 
+  /// Any operation, on one vector after the other.
+  Vec op(OpInput made, std::uint32_t outputs, const std::vector<Vec>& operands) {
+    for (const Vec& v : operands) {
+      made.operands.insert(made.operands.end(), v.begin(), v.end());
+    }
+    return add(std::move(made), outputs);
+  }
+
   std::shared_ptr<const Program> program(const std::vector<Vec>& outputs) const {
     std::vector<Operand> all;
     for (const Vec& v : outputs) all.insert(all.end(), v.begin(), v.end());
