@@ -44,6 +44,7 @@ RenderContext later_context(const RenderContext& given, std::uint32_t vertex) {
   context.albedo = lit_albedo(given, vertex);
   context.light_samples = kLaterLightSamples;
   context.light_dimension = vertex_dimension(vertex, kVertexLightDirection);
+  if (vertex == given.fast_gi.last_vertex) end_in_ambient(context);
   return context;
 }
 
@@ -53,6 +54,7 @@ RenderContext alone_context(const RenderContext& given) {
   context.surface_mask <<= kMaskCatcherShift;
   context.scatter_mask <<= kMaskCatcherShift;
   context.lamp_mask <<= kMaskCatcherShift;
+  context.fast_gi.adds = false;  // as in Cycles
   return context;
 }
 

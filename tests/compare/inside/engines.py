@@ -108,11 +108,25 @@ def set_komorebi(scene: Any, samples: int, mode: str, bounces: int, materials: b
         scene.komorebi,
         film_exposure=1.0,
         sky="SCENE",
+        use_fast_gi=False,
         surface="MATERIAL" if materials else "CLAY",
         use_adaptive_sampling=False,
         time_limit=0.0,
         use_denoising=False,
     )
+
+
+def set_fast_gi(scene: Any, job: dict[str, Any]) -> None:
+    """The approximation in either engine, as the job says; the world has what both read."""
+    if job["fast_gi"] is None:
+        return
+    holder = scene.cycles if job["engine"] == "CYCLES" else scene.komorebi
+    require(
+        holder, use_fast_gi=True, fast_gi_method=job["fast_gi"].upper(),
+        ao_bounces_render=job["ao_bounces"],
+    )  # fmt: skip
+    if job["ao_distance"] is not None:
+        require(scene.world.light_settings, distance=job["ao_distance"])
 
 
 def set_seed(scene: Any, engine: str, seed: int) -> None:

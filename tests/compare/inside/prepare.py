@@ -64,4 +64,5 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
         engines.set_cycles(scene, samples, job["bounces"], job["materials"])
     else:
         engines.set_komorebi(scene, samples, job["mode"], job["bounces"], job["materials"])
+    engines.set_fast_gi(scene, job)
     return scene, layer, notes
