@@ -44,7 +44,7 @@ ENVIRONMENT_SAMPLINGS = (
     ("PRODUCT", "Product", "In proportion to the light's brightness times the surface's cosine"),
 )
 FAST_GI_METHODS = (
-    ("REPLACE", "Replace", "After some bounces ambient occlusion takes the place of all further light"),
+    ("REPLACE", "Replace", "After some bounces ambient occlusion is all that is left of the light"),
     ("ADD", "Add", "White ambient light comes to every surface besides"),
 )
 PIXEL_FILTERS = (
@@ -195,8 +195,8 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
     )  # fmt: skip
     ao_bounces_render: IntProperty(
         name="Render Bounces",
-        description="How often light may come from a surface, the last time by ambient occlusion: 1 "
-        "is ambient occlusion of what is seen; 0 switches the approximation off",
+        description="How often light may come from a surface, the last time by ambient occlusion: "
+        "1 is ambient occlusion of what is seen; 0 switches the approximation off",
         default=1, min=0, max=1024,
     )  # fmt: skip
     environment_sampling: EnumProperty(

@@ -54,13 +54,13 @@ std::shared_ptr<Settings> make_settings(
     std::uint32_t sample_offset, std::uint32_t seed, bool use_adaptive_sampling,
     float adaptive_threshold, std::uint32_t adaptive_min_samples, float time_limit,
     float ao_distance, const std::string& ao_sampling, const std::array<float, 3>& clay_color,
-    std::uint32_t bounces, float sample_clamp_direct, float sample_clamp_indirect, bool use_fast_gi,
-    const std::string& fast_gi_method, std::uint32_t fast_gi_bounces, float fast_gi_distance,
-    float fast_gi_factor, const std::string& environment_sampling, const std::string& pixel_filter,
-    float filter_width, bool use_progressive, bool film_transparent, float mist_start,
-    float mist_depth, const std::string& mist_falloff, std::uint32_t threads,
-    std::uint32_t tile_size, const std::optional<Region>& region,
-    const std::vector<std::string>& passes) {
+    std::uint32_t bounces, float sample_clamp_direct, float sample_clamp_indirect,
+    std::uint32_t world_max_bounces, bool use_fast_gi, const std::string& fast_gi_method,
+    std::uint32_t fast_gi_bounces, float fast_gi_distance, float fast_gi_factor,
+    const std::string& environment_sampling, const std::string& pixel_filter, float filter_width,
+    bool use_progressive, bool film_transparent, float mist_start, float mist_depth,
+    const std::string& mist_falloff, std::uint32_t threads, std::uint32_t tile_size,
+    const std::optional<Region>& region, const std::vector<std::string>& passes) {
   auto s = std::make_shared<Settings>();
   s->method = parse("method", method, kMethods);
   s->samples = samples;
@@ -77,6 +77,7 @@ std::shared_ptr<Settings> make_settings(
   s->bounces = bounces;
   s->sample_clamp_direct = sample_clamp_direct;
   s->sample_clamp_indirect = sample_clamp_indirect;
+  s->world_max_bounces = world_max_bounces;
   s->use_fast_gi = use_fast_gi;
   s->fast_gi_method = parse("fast_gi_method", fast_gi_method, kFastGiMethods);
   s->fast_gi_bounces = fast_gi_bounces;
@@ -178,8 +179,8 @@ void bind_settings(py::module_& module) {
            py::arg("ao_sampling") = "COSINE",
            py::arg("clay_color") = std::array<float, 3>{0.8f, 0.8f, 0.8f}, py::arg("bounces") = 0,
            py::arg("sample_clamp_direct") = 0.0f, py::arg("sample_clamp_indirect") = 10.0f,
-           py::arg("use_fast_gi") = false, py::arg("fast_gi_method") = "REPLACE",
-           py::arg("fast_gi_bounces") = d.fast_gi_bounces,
+           py::arg("world_max_bounces") = d.world_max_bounces, py::arg("use_fast_gi") = false,
+           py::arg("fast_gi_method") = "REPLACE", py::arg("fast_gi_bounces") = d.fast_gi_bounces,
            py::arg("fast_gi_distance") = d.fast_gi_distance,
            py::arg("fast_gi_factor") = d.fast_gi_factor,
            py::arg("environment_sampling") = "PRODUCT", py::arg("pixel_filter") = "BLACKMAN_HARRIS",

@@ -77,6 +77,7 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.method = settings.method;
   context.ao_sampling = settings.ao_sampling;
   context.clay_albedo = settings.clay_color;
+  context.world_max_bounces = settings.world_max_bounces;
   context.fast_gi = make_fast_gi(settings);
   context.bounces = std::min(settings.bounces, context.fast_gi.last_vertex);
   take_materials(scene.tables(), ao, context);

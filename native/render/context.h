@@ -43,8 +43,10 @@ struct RenderContext {
   /// others, and the map's mean_flux with its strength. Else 0.
   std::uint32_t surface_mask = 0;
   float sky_flux = 0.0f;
-  /// Of those rays: the largest t, and what counts of the light that they find (end_in_ambient).
-  float surface_distance = Ray{}.t_max, surface_factor = 1.0f;
+  /// What counts of the light that they find, and of that which the others find; their largest t.
+  float surface_factor = 1.0f, map_factor = 1.0f;
+  float surface_distance = Ray{}.t_max;
+  std::uint32_t world_max_bounces = 0;  ///< Settings
   /// Whether rays may leave above coarse smooth surfaces, and then go below their own triangle, or
   /// cosines be cut (core/terminator.h). Points have a terminator where any of their rays heeds it.
   bool has_terminators = false, lifts_rays = false, bends_round = false, cuts_cosines = false;

@@ -25,6 +25,7 @@ void for_each_setting(SettingsLike& s, const Visit& visit) {
   visit("bounces", s.bounces);
   visit("sample_clamp_direct", s.sample_clamp_direct);
   visit("sample_clamp_indirect", s.sample_clamp_indirect);
+  visit("world_max_bounces", s.world_max_bounces);
   visit("use_fast_gi", s.use_fast_gi);
   visit("fast_gi_method", s.fast_gi_method);
   visit("fast_gi_bounces", s.fast_gi_bounces);

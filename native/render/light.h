@@ -38,12 +38,11 @@ float surface_share(const RenderContext& context, const Vec3& normal, const Vec3
 /// surface_mask.
 inline float arriving_share(const RenderContext& context, const Vec3& normal, const Vec3& direction,
                             bool light_passes, bool surface_passes) {
-  const float factor = context.surface_factor;
-  if (light_passes == surface_passes && (!light_passes || factor == 1.0f)) {
-    return light_passes ? 1.0f : 0.0f;
-  }
+  const float of_map = light_passes ? context.map_factor : 0.0f;
+  const float of_surface = surface_passes ? context.surface_factor : 0.0f;
+  if (of_map == of_surface) return of_map;
   const float share = surface_share(context, normal, direction);
-  return (light_passes ? 1.0f - share : 0.0f) + (surface_passes ? share * factor : 0.0f);
+  return (1.0f - share) * of_map + share * of_surface;
 }
 
 /// The shadow ray of a light sample.

@@ -45,6 +45,10 @@ RenderContext later_context(const RenderContext& given, std::uint32_t vertex) {
   context.light_samples = kLaterLightSamples;
   context.light_dimension = vertex_dimension(vertex, kVertexLightDirection);
   if (vertex == given.fast_gi.last_vertex) end_in_ambient(context);
+  if (vertex > given.world_max_bounces && context.sky.width > 0) {
+    context.surface_mask = context.scatter_mask;
+    context.map_factor = 0.0f;
+  }
   return context;
 }
 

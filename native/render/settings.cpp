@@ -59,6 +59,7 @@ void check_settings(const Settings& s, std::uint32_t width, std::uint32_t height
       std::isfinite(s.sample_clamp_direct) && s.sample_clamp_direct >= 0.0f &&
           std::isfinite(s.sample_clamp_indirect) && s.sample_clamp_indirect >= 0.0f,
       "sample_clamp_direct and sample_clamp_indirect must be finite and not negative (0 is none)");
+  require(s.world_max_bounces <= kMaxBounces, "world_max_bounces must be 0 to 1024");
   require(s.fast_gi_bounces <= kMaxBounces, "fast_gi_bounces must be 0 (never) to 1024");
   require(std::isfinite(s.fast_gi_distance) && s.fast_gi_distance >= 0.0f,
           "fast_gi_distance must be finite and not negative");

@@ -51,6 +51,8 @@ struct Settings {
   /// Most that one vertex of a sample brings, as the mean of the channels; 0: anything. What the
   /// camera sees without and with bounces; names, meaning and values are those of Cycles.
   float sample_clamp_direct = 0.0f, sample_clamp_indirect = 10.0f;
+  /// After so many bounces light of a map counts by the surface's own rays alone, as in Cycles.
+  std::uint32_t world_max_bounces = 1024;
   bool use_fast_gi = false;  ///< under World Light
   FastGiMethod fast_gi_method = FastGiMethod::kReplace;
   std::uint32_t fast_gi_bounces = 1;  ///< after which Replace sets in; 0: never

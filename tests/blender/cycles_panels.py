@@ -6,7 +6,7 @@ Cycles' own `ui.py` in every release.
 
 VOLUMES = "volumes are not rendered"
 LINKING = "lamps light all objects"
-LAMP_NODES = "of a light's nodes one Emission counts; they are edited in the node editor"
+LAMP_NODES = "a light's nodes are edited in the node editor"
 LAMP_SETTINGS = "one strategy finds lamps, and its choice among many has no settings"
 GUIDING = "light rays are guided by what surfaces see of the sky, bounces by the cosine alone"
 OWN_DISTANCE = "all objects have the world's AO distance"
@@ -61,6 +61,8 @@ REPLACED = {
     "CYCLES_LIGHT_PT_light": "KOMOREBI_LIGHT_PT_light",
     "CYCLES_LIGHT_PT_beam_shape": "KOMOREBI_LIGHT_PT_light",
     "CYCLES_WORLD_PT_surface": "KOMOREBI_WORLD_PT_surface",
+    "CYCLES_WORLD_PT_settings": "KOMOREBI_WORLD_PT_settings",
+    "CYCLES_WORLD_PT_settings_surface": "KOMOREBI_WORLD_PT_settings",
     "CYCLES_WORLD_PT_mist": "KOMOREBI_WORLD_PT_mist",
     "CYCLES_WORLD_PT_ray_visibility": "KOMOREBI_WORLD_PT_ray_visibility",
     "CYCLES_MATERIAL_PT_surface": "KOMOREBI_MATERIAL_PT_surface",
@@ -111,11 +113,6 @@ LEFT_OUT = {
     "CYCLES_LIGHT_PT_settings": LAMP_SETTINGS,
     "CYCLES_WORLD_PT_preview": PREVIEWS,
     "CYCLES_WORLD_PT_volume": VOLUMES,
-    "CYCLES_WORLD_PT_settings": "only of the three below",
-    "CYCLES_WORLD_PT_settings_surface": (
-        "the map's resolution is the image's; scene.komorebi.environment_sampling says how it is "
-        "sampled"
-    ),
     "CYCLES_WORLD_PT_settings_volume": VOLUMES,
     "CYCLES_WORLD_PT_settings_light_group": LIGHT_GROUPS,
     "CYCLES_MATERIAL_PT_preview": PREVIEWS,

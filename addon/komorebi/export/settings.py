@@ -73,6 +73,7 @@ def export_settings(
         "bounces": bounces(settings),
         "sample_clamp_direct": settings.sample_clamp_direct,
         "sample_clamp_indirect": settings.sample_clamp_indirect,
+        "world_max_bounces": compat.max_bounces(scene.world if settings.sky == "SCENE" else None),
         **fast_gi(scene),
         "environment_sampling": settings.environment_sampling,
         "pixel_filter": settings.pixel_filter,

@@ -103,6 +103,8 @@ TEST_P(Equality, BatchesAgreeWithOneRayByFastGi) {
   }
   settings_.fast_gi_method = FastGiMethod::kAdd;
   expect_alike();
+  settings_.world_max_bounces = 1;
+  expect_alike();
 }
 
 TEST_P(Equality, ThroughBouncesThreadsTilesBuildersAndInstructionSetsDoNotShow) {
