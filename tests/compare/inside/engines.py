@@ -44,7 +44,7 @@ def owen_scramble(cycles: Any) -> None:
     raise RuntimeError("this Cycles has no sampling pattern that a seed changes")
 
 
-def set_cycles(scene: Any, samples: int, bounces: int, materials: bool) -> None:
+def set_cycles(scene: Any, samples: int, bounces: int) -> None:
     """Cycles on the CPU: diffuse bounces alone, box filter, and nothing that biases or stops early."""
     if not hasattr(scene, "cycles"):
         raise RuntimeError(
@@ -69,7 +69,7 @@ def set_cycles(scene: Any, samples: int, bounces: int, materials: bool) -> None:
         glossy_bounces=0,
         transmission_bounces=bounces,  # what comes through translucent surfaces
         volume_bounces=0,
-        transparent_max_bounces=1024 if materials else 0,
+        transparent_max_bounces=1024,  # paths that pass through a lamp count it too
         feature_set="SUPPORTED",
         shading_system=False,
         film_exposure=1.0,
