@@ -22,6 +22,7 @@ NORMALS_AS_DIRECTIONS = VERSION < (4, 0, 0)  # so the node Vector Transform turn
 CORNER_NORMALS = VERSION >= (4, 1, 0)  # mesh.corner_normals, no auto smooth
 NOISE_REPEATS = VERSION >= (4, 1, 0)  # every 100,000 cells, where floats lose places in a cell
 VORONOI_PCG = VERSION >= (5, 0, 0)  # hashes cells of two dimensions and more
+UNLIMITED_BOUNCES = 1024  # the most that a lamp's or world's setting can be
 OLD_LAMPS = VERSION < (4, 0, 0)  # disks for balls, areas of a quarter of their power
 
 
@@ -365,6 +366,11 @@ def casts_shadow(light: Any) -> bool:
     if settings is not None and hasattr(settings, "cast_shadow"):
         return bool(settings.cast_shadow)
     return bool(light.use_shadow)
+
+
+def max_bounces(owner: Any) -> int:
+    """How often light of a lamp or world may bounce: Cycles' setting, no limit without Cycles."""
+    return int(getattr(cycles_or(owner, None), "max_bounces", UNLIMITED_BOUNCES))
 
 
 def is_soft(light: Any) -> bool:

@@ -45,5 +45,8 @@ def _programs(data: SceneData) -> Iterator[ProgramData]:
     for program in (data.world.program, data.world.camera_program, data.world_values):
         if program is not None:
             yield program
+    for lamp in data.lamps:
+        if lamp.program is not None:
+            yield lamp.program
     for material in data.materials.materials:
         yield from material.programs()

@@ -7,7 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from . import cache, dump, native_programs, native_surfaces, native_texture, native_world
+from . import (
+    cache,
+    dump,
+    native_lamps,
+    native_programs,
+    native_surfaces,
+    native_texture,
+    native_world,
+)
 from .cryptomatte import name_id
 from .mesh_cache import KnownMesh
 from .scene_data import (
@@ -17,6 +25,7 @@ from .scene_data import (
     FloatArray,
     InstanceData,
     KnownShape,
+    LampData,
     MeshData,
     MeshKey,
     PointData,
@@ -30,6 +39,7 @@ class Parts:
 
     meshes: list[Any] = field(default_factory=list)  # core.Mesh, as SceneData.meshes
     world: native_world.NativeWorld = field(default_factory=native_world.NativeWorld)
+    lamps: list[LampData] = field(default_factory=list)
     programs: Any = None  # native_programs.Programs
     warnings: list[str] = field(default_factory=list)
     builder: str = "LINEAR"  # of the trees that had to be built
@@ -51,6 +61,7 @@ def load(core: Any, data: SceneData, expected_rays: float, threads: int, cancel:
         parts.meshes.append(_mesh(core, mesh, builder, threads, cancel))
         data.meshes[index] = None  # type: ignore[call-overload]
     parts.programs = native_programs.load(core, data, threads, parts.warnings)
+    parts.lamps = native_lamps.load(data.lamps, parts.programs, parts.warnings)
     parts.world = native_world.load(core, data.world, image_key, parts.programs, threads, cancel)
     return parts
 
@@ -81,7 +92,7 @@ def build(
         )  # fmt: skip
     if parts.world.camera is not None:
         scene.set_world_program(parts.world.camera, parts.world.max_radiance)
-    for lamp in [*data.lamps, *parts.world.suns]:
+    for lamp in [*parts.lamps, *parts.world.suns]:
         scene.add_lamp(
             lamp.kind, lamp.radiance, lamp.matrix,
             name=lamp.name, casts_shadow=lamp.casts_shadow, lights_catchers=lamp.lights_catchers,

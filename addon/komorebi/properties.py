@@ -43,6 +43,10 @@ ENVIRONMENT_SAMPLINGS = (
     ("ENVIRONMENT", "Environment", "Rays by the map's brightness: good for small bright suns"),
     ("PRODUCT", "Product", "In proportion to the light's brightness times the surface's cosine"),
 )
+FAST_GI_METHODS = (
+    ("REPLACE", "Replace", "After some bounces ambient occlusion is all that is left of the light"),
+    ("ADD", "Add", "White ambient light comes to every surface besides"),
+)
 PIXEL_FILTERS = (
     ("BLACKMAN_HARRIS", "Blackman-Harris", "Smooth and sharp"),
     ("GAUSSIAN", "Gaussian", "Smoother"),
@@ -176,6 +180,24 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         description="Most that a sample may bring after each bounce: takes away bright specks, and "
         "light with them; 0 is no limit",
         default=10.0, min=0.0, max=1e8,
+    )  # fmt: skip
+    # Names, meaning and values of these three are those of Cycles; its factor and distance are the
+    # world's own.
+    use_fast_gi: BoolProperty(
+        name="Fast GI Approximation",
+        description="For previews under World Light: ambient occlusion, coloured by the world, in "
+        "place of light that bounces often, or besides",
+        default=False,
+    )
+    fast_gi_method: EnumProperty(
+        name="Method", description="What ambient occlusion does to the light",
+        items=FAST_GI_METHODS, default="REPLACE",
+    )  # fmt: skip
+    ao_bounces_render: IntProperty(
+        name="Render Bounces",
+        description="How often light may come from a surface, the last time by ambient occlusion: "
+        "1 is ambient occlusion of what is seen; 0 switches the approximation off",
+        default=1, min=0, max=1024,
     )  # fmt: skip
     environment_sampling: EnumProperty(
         name="Environment Sampling", description="How rays towards the world are chosen",

@@ -304,6 +304,7 @@ class WorldData:
     resolution: int = 0  # columns of pixels of the map that is made from the program; 0: automatic
     camera_program: ProgramData | None = None  # what camera rays see; None: the same
     suns: list[SunData] = field(default_factory=list)  # besides `program`
+    max_bounces: int = 1024  # of the suns
 
 
 @dataclass(slots=True)
@@ -318,6 +319,8 @@ class LampData:
     casts_shadow: bool = True
     lights_catchers: bool = True
     spot_scales_by_cosine: bool = False
+    program: ProgramData | None = None  # of what its light is multiplied by, three outputs
+    uneven: str = ""  # the warning if that varies over the lamp
 
 
 @dataclass(slots=True)

@@ -26,6 +26,8 @@ constexpr Choice<EnvironmentSampling> kEnvironmentSamplings[] = {
     {"COSINE", EnvironmentSampling::kCosine},
     {"ENVIRONMENT", EnvironmentSampling::kEnvironment},
     {"PRODUCT", EnvironmentSampling::kProduct}};
+constexpr Choice<FastGiMethod> kFastGiMethods[] = {{"REPLACE", FastGiMethod::kReplace},
+                                                   {"ADD", FastGiMethod::kAdd}};
 constexpr Choice<PixelFilter> kPixelFilters[] = {{"BLACKMAN_HARRIS", PixelFilter::kBlackmanHarris},
                                                  {"GAUSSIAN", PixelFilter::kGaussian},
                                                  {"BOX", PixelFilter::kBox}};
@@ -53,6 +55,8 @@ std::shared_ptr<Settings> make_settings(
     float adaptive_threshold, std::uint32_t adaptive_min_samples, float time_limit,
     float ao_distance, const std::string& ao_sampling, const std::array<float, 3>& clay_color,
     std::uint32_t bounces, float sample_clamp_direct, float sample_clamp_indirect,
+    std::uint32_t world_max_bounces, bool use_fast_gi, const std::string& fast_gi_method,
+    std::uint32_t fast_gi_bounces, float fast_gi_distance, float fast_gi_factor,
     const std::string& environment_sampling, const std::string& pixel_filter, float filter_width,
     bool use_progressive, bool film_transparent, float mist_start, float mist_depth,
     const std::string& mist_falloff, std::uint32_t threads, std::uint32_t tile_size,
@@ -73,6 +77,12 @@ std::shared_ptr<Settings> make_settings(
   s->bounces = bounces;
   s->sample_clamp_direct = sample_clamp_direct;
   s->sample_clamp_indirect = sample_clamp_indirect;
+  s->world_max_bounces = world_max_bounces;
+  s->use_fast_gi = use_fast_gi;
+  s->fast_gi_method = parse("fast_gi_method", fast_gi_method, kFastGiMethods);
+  s->fast_gi_bounces = fast_gi_bounces;
+  s->fast_gi_distance = fast_gi_distance;
+  s->fast_gi_factor = fast_gi_factor;
   s->environment_sampling =
       parse("environment_sampling", environment_sampling, kEnvironmentSamplings);
   s->pixel_filter = parse("pixel_filter", pixel_filter, kPixelFilters);
@@ -169,6 +179,10 @@ void bind_settings(py::module_& module) {
            py::arg("ao_sampling") = "COSINE",
            py::arg("clay_color") = std::array<float, 3>{0.8f, 0.8f, 0.8f}, py::arg("bounces") = 0,
            py::arg("sample_clamp_direct") = 0.0f, py::arg("sample_clamp_indirect") = 10.0f,
+           py::arg("world_max_bounces") = d.world_max_bounces, py::arg("use_fast_gi") = false,
+           py::arg("fast_gi_method") = "REPLACE", py::arg("fast_gi_bounces") = d.fast_gi_bounces,
+           py::arg("fast_gi_distance") = d.fast_gi_distance,
+           py::arg("fast_gi_factor") = d.fast_gi_factor,
            py::arg("environment_sampling") = "PRODUCT", py::arg("pixel_filter") = "BLACKMAN_HARRIS",
            py::arg("filter_width") = d.filter_width, py::arg("use_progressive") = d.use_progressive,
            py::arg("film_transparent") = d.film_transparent, py::arg("mist_start") = d.mist_start,

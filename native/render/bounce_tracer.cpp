@@ -9,7 +9,8 @@ namespace komorebi {
 BounceTracer::BounceTracer(const RenderContext& context)
     : context_(context),
       caster_(later_context(context, 1)),
-      lamp_caster_(later_context(context, 1)) {}
+      lamp_caster_(later_context(context, 1)),
+      added_light_(later_context(context, 1), 1) {}
 
 void BounceTracer::clear() {
   next_rays_.clear();
@@ -64,7 +65,8 @@ bool BounceTracer::find_surfaces(std::uint32_t vertex, const Cancel& cancel) {
   surfaces_.fill(context_, hits_.data(), rays);
   shader_.shade(context_, vertex, hits_.data(), rays, kLaterLightSamples, surfaces_);
   light_.assign(surfaces_.size(), Vec3(0.0f));
-  caster_.set_light_dimension(vertex_dimension(vertex, kVertexLightDirection));
+  const RenderContext context = later_context(context_, vertex);
+  caster_.set_context(context);
   const std::uint32_t size = caster_.block_size();
   for (std::uint32_t begin = 0; begin < surfaces_.size(); begin += size) {
     if (cancel.raised()) return false;
@@ -73,19 +75,22 @@ bool BounceTracer::find_surfaces(std::uint32_t vertex, const Cancel& cancel) {
                    if (visible) light_[s] += contribution;
                  });
   }
-  return find_lamp_light(vertex, cancel);
+  return find_more_light(context, vertex, cancel);
 }
 
-bool BounceTracer::find_lamp_light(std::uint32_t vertex, const Cancel& cancel) {
-  if (context_.lamps.count == 0) return true;
-  lamp_light_.assign(surfaces_.size(), Vec3(0.0f));
+bool BounceTracer::find_more_light(const RenderContext& context, std::uint32_t vertex,
+                                   const Cancel& cancel) {
+  if (!has_more_light(context)) return true;
+  more_light_.assign(surfaces_.size(), Vec3(0.0f));
+  const bool lamps = context.lamps.count > 0;
   const std::uint32_t size = lamp_caster_.block_size();
-  for (std::uint32_t begin = 0; begin < surfaces_.size(); begin += size) {
+  for (std::uint32_t begin = 0; lamps && begin < surfaces_.size(); begin += size) {
     if (cancel.raised()) return false;
     lamp_caster_.cast(surfaces_, begin, std::min(surfaces_.size(), begin + size), vertex,
-                      lamp_light_.data());
+                      more_light_.data());
   }
-  return true;
+  return !context.fast_gi.adds ||
+         added_light_.add(context, vertex, surfaces_, cancel, more_light_.data());
 }
 
 bool BounceTracer::trace(const Cancel& cancel,
@@ -97,7 +102,7 @@ bool BounceTracer::trace(const Cancel& cancel,
       State state = states_[surfaces_.path(s)];
       const Shading shading = surfaces_.shading(s);
       Vec3 light = light_[s] / static_cast<float>(kLaterLightSamples);
-      if (context_.lamps.count > 0) light += lamp_light_[s];
+      if (has_more_light(context_)) light += more_light_[s];
       visit(state.path, indirect_light(context_, vertex, state.throughput, shading, light));
       if (vertex == context_.bounces) continue;
       state.throughput *= shading.albedo;

@@ -4,6 +4,7 @@
 
 #include "parallel/cancel.h"
 #include "parallel/function_ref.h"
+#include "render/added_light.h"
 #include "render/lamp_caster.h"
 #include "render/light_caster.h"
 #include "render/ray_batch.h"
@@ -29,7 +30,7 @@ class BounceTracer {
   bool trace(const Cancel& cancel, FunctionRef<void(std::uint32_t path, const Vec3& light)> visit);
 
   std::uint64_t ray_count() const {
-    return ray_count_ + caster_.ray_count() + lamp_caster_.ray_count();
+    return ray_count_ + caster_.ray_count() + lamp_caster_.ray_count() + added_light_.ray_count();
   }
 
  private:
@@ -42,12 +43,14 @@ class BounceTracer {
   void leave(std::uint32_t vertex, const SurfaceBatch& surfaces, std::uint32_t surface,
              State state);
   void take_next();
-  bool find_lamp_light(std::uint32_t vertex, const Cancel& cancel);
+  /// Of lamps, and what Fast GI adds.
+  bool find_more_light(const RenderContext& context, std::uint32_t vertex, const Cancel& cancel);
   bool find_surfaces(std::uint32_t vertex, const Cancel& cancel);
 
   RenderContext context_;
   LightCaster caster_;
   LampCaster lamp_caster_;
+  AddedLight added_light_;
   RayBatch rays_, next_rays_;
   std::vector<State> states_, next_states_;  // of each ray
   RayOrder order_;
@@ -55,7 +58,7 @@ class BounceTracer {
   SurfaceBatch surfaces_;
   BatchShader shader_;
   std::vector<Vec3> light_;       // of the light rays of each surface
-  std::vector<Vec3> lamp_light_;  // likewise of those to lamps
+  std::vector<Vec3> more_light_;  // beside these, as a mean
   std::uint64_t ray_count_ = 0;
 };
 

@@ -76,6 +76,7 @@ void for_each_light_ray(const RenderContext& context, const SurfacePoint& point,
     bool visible = !occluded_scalar(context.scene, ray);
     if (context.surface_mask != 0) {
       ray.mask = context.surface_mask;
+      ray.t_max = context.surface_distance;
       const float arriving = arriving_share(context, point.normal, drawn.direction, visible,
                                             !occluded_scalar(context.scene, ray));
       drawn.contribution *= arriving;
@@ -96,6 +97,19 @@ Vec3 mean_light(const RenderContext& context, const SurfacePoint& point, const H
   return light / static_cast<float>(context.light_samples);
 }
 
+/// What lamps bring to a point, and what Fast GI adds.
+Vec3 more_light(const RenderContext& context, const SurfacePoint& point, const Hit& hit,
+                const Sampler& sampler, std::uint32_t vertex, std::uint32_t sample, float time) {
+  Vec3 light = lamp_light(context, point, hit, sampler, vertex, sample, time);
+  if (!context.fast_gi.adds) return light;
+  float seen = 0.0f;
+  for_each_light_ray(added_light_context(context, vertex), point, hit, sampler, sample, time,
+                     [&](const LightSample& drawn, bool visible) {
+                       if (visible) seen += drawn.contribution.x;
+                     });
+  return light + added_light(context, seen);
+}
+
 /// Adds what comes to the surface in view from others, vertex by vertex.
 void add_bounces(const RenderContext& context, MaterialShader& shader, SurfacePoint point, Hit hit,
                  Vec3 throughput, const Sampler& sampler, std::uint32_t sample, float time,
@@ -114,8 +128,8 @@ void add_bounces(const RenderContext& context, MaterialShader& shader, SurfacePo
         shade_surface(context, shader, hit, ray, sampler.pixel_seed, sample, vertex + 1, point);
     const RenderContext later = later_context(context, vertex + 1);
     Vec3 light = mean_light(later, point, hit, sampler, sample, time);
-    if (later.lamps.count > 0) {
-      light += lamp_light(later, point, hit, sampler, vertex + 1, sample, time);
+    if (has_more_light(later)) {
+      light += more_light(later, point, hit, sampler, vertex + 1, sample, time);
     }
     radiance += indirect_light(context, vertex + 1, throughput, shading, light);
     throughput *= shading.albedo;
@@ -128,7 +142,7 @@ Vec3 light_alone(const RenderContext& given, MaterialShader& shader, const Surfa
                  std::uint32_t sample, float time) {
   const RenderContext context = alone_context(given);
   Vec3 light = mean_light(context, point, hit, sampler, sample, time);
-  if (context.lamps.count > 0) light += lamp_light(context, point, hit, sampler, 0, sample, time);
+  if (has_more_light(context)) light += more_light(context, point, hit, sampler, 0, sample, time);
   Vec3 radiance = direct_light(context, shading, light);
   add_bounces(context, shader, point, hit, shading.albedo, sampler, sample, time, radiance);
   return radiance;
@@ -168,8 +182,8 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
                        add_ambient(layout, of_light, drawn.direction, drawn.contribution.x, row);
                      });
   Vec3 light = result.radiance / static_cast<float>(context.light_samples);
-  if (context.lamps.count > 0) {
-    light += lamp_light(context, point, hit, sampler, 0, sample, ray.time);
+  if (has_more_light(context)) {
+    light += more_light(context, point, hit, sampler, 0, sample, ray.time);
   }
   result.radiance = direct_light(context, shading, light);
   add_bounces(context, shader, point, hit, shading.albedo, sampler, sample, ray.time,

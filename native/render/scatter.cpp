@@ -44,6 +44,11 @@ RenderContext later_context(const RenderContext& given, std::uint32_t vertex) {
   context.albedo = lit_albedo(given, vertex);
   context.light_samples = kLaterLightSamples;
   context.light_dimension = vertex_dimension(vertex, kVertexLightDirection);
+  if (vertex == given.fast_gi.last_vertex) end_in_ambient(context);
+  if (vertex > given.world_max_bounces && context.sky.width > 0) {
+    context.surface_mask = context.scatter_mask;
+    context.map_factor = 0.0f;
+  }
   return context;
 }
 
@@ -53,6 +58,7 @@ RenderContext alone_context(const RenderContext& given) {
   context.surface_mask <<= kMaskCatcherShift;
   context.scatter_mask <<= kMaskCatcherShift;
   context.lamp_mask <<= kMaskCatcherShift;
+  context.fast_gi.adds = false;  // as in Cycles
   return context;
 }
 

@@ -102,7 +102,7 @@ class Scene {
   /// About the most that one camera sample brings by lamps: LampTable::max_radiance where they are
   /// nearer than a thousandth of the scene's length.
   float max_lamp_radiance() const {
-    return lamps_.max_radiance(static_cast<float>(1e-3 * length_));
+    return lamps_.max_radiance(static_cast<float>(1e-3 * length_), static_cast<float>(length_));
   }
 
   const Vec3d& origin() const { return origin_; }
