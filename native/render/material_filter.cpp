@@ -12,7 +12,7 @@ bool asks_for_point(const Program& program) {
     if (program.asks(static_cast<PointInput>(i))) return true;
   }
   for (const std::string& name : program.attributes()) {
-    if (name.starts_with("dx:") || name.starts_with("dy:")) return true;
+    if (asks_for_step(name)) return true;
   }
   return false;
 }

@@ -22,8 +22,7 @@ ProgramBounds::ProgramBounds(const Program& program, TextureBoundsTable& texture
     Step step;
     step.first_value = value_count_;
     step.outputs = kMostOutputs;
-    // Of how attributes change by a step ("dx:UVMap") nothing is known.
-    if (op.op == "attribute" && op.name.find(':') == std::string::npos) {
+    if (op.op == "attribute" && !asks_for_step(op.name)) {
       const auto found = std::find(attributes_.begin(), attributes_.end(), op.name);
       step.attribute = static_cast<std::uint32_t>(found - attributes_.begin());
       if (found == attributes_.end()) attributes_.push_back(op.name);
