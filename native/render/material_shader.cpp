@@ -101,11 +101,10 @@ void MaterialShader::shade(const RenderContext& context, std::span<ShadeTask> ta
 }
 
 void MaterialShader::clear_shares(const RenderContext& context, const Program& program,
-                                  std::uint32_t first, const ShadeTask* tasks, std::uint32_t count,
-                                  float* shares) {
+                                  const ShadeTask* tasks, std::uint32_t count, float* shares) {
   float* const* rows = run_.run(context, program, tasks, count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    shares[i] = clear_share(Outputs{rows, i}.vector(first));
+    shares[i] = clear_share(Outputs{rows, i}.vector(0));
   }
 }
 
