@@ -87,10 +87,11 @@ void Texture::add_levels(ThreadPool& pool, std::uint32_t skip) {
   }
   skip = std::min(skip, static_cast<std::uint32_t>(levels_.size() - 1));
   coarser_.resize(room);
-  const LevelShape shape = {type_, channels_, srgb_, !data_};
+  LevelShape shape = {type_, channels_, srgb_, !data_, true};
   for (std::size_t i = 1; i < levels_.size(); ++i) {
     std::byte* to = coarser_.data() + offset[i - 1];
     make_coarser(shape, levels_[i - 1].data, levels_[i - 1].width, levels_[i - 1].height, to, pool);
+    shape.finest = false;
     levels_[i].data = to;
   }
   if (skip == 0) return;
@@ -121,8 +122,10 @@ Vec4 Texture::lookup(const TextureSampling& how, float u, float v, float footpri
   const std::uint32_t wanted =
       footprint > 0.0f ? level_of(footprint, std::min(levels_[0].width, levels_[0].height)) : 0;
   const Level& level = levels_[std::min<std::size_t>(wanted, levels_.size() - 1)];
+  TextureSampling taken = how;
+  if (wanted > 0) taken.interpolation = Interpolation::kClosest;
   Vec4 value = with_reader(type_, channels_, level.data, level.width, level.height,
-                           [&](const auto& texel) { return look_up(texel, how, u, v); });
+                           [&](const auto& texel) { return look_up(texel, taken, u, v); });
   if (channels_ == 1) value.w = 1.0f;
   const float alpha = value.w;
   if (how.straight && !data_ && alpha != 1.0f && alpha != 0.0f) {

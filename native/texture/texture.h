@@ -47,7 +47,9 @@ class Texture {
   /// Colour (linear Rec. 709) and alpha at a place of the picture, (0, 0) to (1, 1), bottom left to
   /// top right.
   /// @param footprint  width of what may be averaged, in the same units; 0: nothing, as in Cycles.
-  ///                   The level is taken of which the texels are no larger than that.
+  ///                   Of the level with the largest texels that are no wider, the texel there is
+  ///                   taken: interpolated as stored, neighbours would not have their mean in
+  ///                   light.
   Vec4 lookup(const TextureSampling& how, float u, float v, float footprint = 0.0f) const;
 
   const std::string& name() const { return name_; }
