@@ -77,12 +77,6 @@ def default_vector(compiler: Compiler, node: Any) -> Value:
     return generated(compiler)
 
 
-def vector_input(compiler: Compiler, node: Any) -> Value:
-    """A texture's input Vector, or what stands for it."""
-    socket = node.inputs["Vector"]
-    return compiler.value(socket) if compiler.is_linked(socket) else default_vector(compiler, node)
-
-
 def normal_input(compiler: Compiler, node: Any) -> Value:
     """The input Normal; the surface's own where nothing is linked."""
     socket = node.inputs["Normal"]
