@@ -33,7 +33,7 @@ std::uint32_t level_of(float width, std::uint32_t texels) {
 }  // namespace
 
 Texture::Texture(std::string name, Texels texels, const TextureColor& color, ThreadPool& pool,
-                 std::uint32_t skip)
+                 const TextureLevels& kept)
     : name_(std::move(name)), srgb_(color.srgb && !color.has_matrix), data_(color.data) {
   const bool fits = texels.width > 0 && texels.height > 0 && texels.width <= kMaxSide &&
                     texels.height <= kMaxSide && (texels.channels == 1 || texels.channels == 4) &&
@@ -49,7 +49,8 @@ Texture::Texture(std::string name, Texels texels, const TextureColor& color, Thr
   type_ = texels.type;
   levels_.push_back({texels.data.get(), texels.width, texels.height});
   finest_ = std::move(texels.data);
-  add_levels(pool, skip);
+  if (kept.coarser || kept.skip > 0) add_levels(pool, kept.skip);
+  if (!kept.coarser) keep_first_level();
 }
 
 Texture::Texture(std::string name, std::vector<Tile> tiles)
@@ -106,6 +107,16 @@ void Texture::add_levels(ThreadPool& pool, std::uint32_t skip) {
   }
 }
 
+void Texture::keep_first_level() {
+  levels_.resize(1);
+  if (finest_) return;
+  const Level& first = levels_[0];
+  Array<std::byte> kept(std::size_t{first.width} * first.height * channels_ * texel_bytes(type_));
+  std::copy_n(coarser_.begin(), kept.size(), kept.begin());
+  coarser_ = std::move(kept);
+  levels_[0].data = coarser_.data();
+}
+
 Vec4 Texture::lookup(const TextureSampling& how, float u, float v, float footprint) const {
   if (!tiles_.empty()) {
     // Truncated, so that what is a little below 0 belongs to the first tile: as in Cycles.
@@ -153,14 +164,14 @@ std::uint64_t Texture::nonfinite_texels() const {
 }
 
 std::size_t Texture::byte_count(const Texels& header, const TextureColor& color,
-                                std::uint32_t skip) {
+                                const TextureLevels& kept) {
   const TexelType type = color.has_matrix ? converted_type(header.type) : header.type;
   const std::size_t texel = header.channels * texel_bytes(type);
   std::size_t sum = 0;
-  for (std::uint32_t level = skip;; ++level) {
+  for (std::uint32_t level = kept.skip;; ++level) {
     const std::size_t width = side_at(header.width, level), height = side_at(header.height, level);
     sum += texel * width * height;
-    if (width == 1 && height == 1) return sum;
+    if (!kept.coarser || (width == 1 && height == 1)) return sum;
   }
 }
 

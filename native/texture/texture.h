@@ -26,15 +26,20 @@ struct TextureColor {
   std::array<float, 9> matrix{};
 };
 
+/// Which levels of a picture are kept.
+struct TextureLevels {
+  std::uint32_t skip = 0;  ///< how many of the finest are left out, to save memory
+  bool coarser = true;     ///< whether there is more than one
+};
+
 /// A picture, or the tiles of one (UDIM), with coarser levels; immutable, to be shared and counted.
 /// What a look-up gives depends on the picture alone, to the bit. Safe from any thread.
 class Texture {
  public:
   /// Numbers that are not finite become 0, and are counted with their texel.
-  /// @param skip  how many of the finest levels are left out, to save memory
   /// @throws std::invalid_argument naming the texture when it has no texels or too many
   Texture(std::string name, Texels texels, const TextureColor& color, ThreadPool& pool,
-          std::uint32_t skip = 0);
+          const TextureLevels& kept = {});
 
   /// Tiles by their UDIM numbers: 1001 + column + 10 · row. Where there is no tile, magenta.
   /// @throws std::invalid_argument
@@ -61,9 +66,9 @@ class Texture {
   std::size_t byte_count() const;
   std::uint64_t nonfinite_texels() const;
 
-  /// Bytes of all levels of a picture from level `skip` on.
+  /// Bytes of a picture's levels.
   static std::size_t byte_count(const Texels& header, const TextureColor& color,
-                                std::uint32_t skip = 0);
+                                const TextureLevels& kept = {});
 
  private:
   struct Level {
@@ -72,6 +77,7 @@ class Texture {
   };
 
   void add_levels(ThreadPool& pool, std::uint32_t skip);
+  void keep_first_level();
 
   std::string name_;
   bool srgb_ = false, data_ = false;

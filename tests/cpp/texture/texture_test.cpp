@@ -281,10 +281,22 @@ TEST(Texture, EqualForAnyThreadsAndLevelsLeftOut) {
   const Texture one = float_texture(300, 217, values, 1), four = float_texture(300, 217, values, 4);
   ThreadPool pool(3);
   const Texels header = texels_of(300, 217, 4, TexelType::kFloat, values);
-  const Texture small("t", texels_of(300, 217, 4, TexelType::kFloat, values), {}, pool, 2);
+  const Texture small("t", texels_of(300, 217, 4, TexelType::kFloat, values), {}, pool, {2, true});
   EXPECT_EQ(small.width(), 75u);
-  EXPECT_EQ(small.byte_count() / 1000, Texture::byte_count(header, {}, 2) / 1000);
-  EXPECT_EQ(one.byte_count() / 1000, Texture::byte_count(header, {}, 0) / 1000);
+  EXPECT_EQ(small.byte_count() / 1000, Texture::byte_count(header, {}, {2, true}) / 1000);
+  EXPECT_EQ(one.byte_count() / 1000, Texture::byte_count(header, {}) / 1000);
+  for (const std::uint32_t skip : {0u, 2u}) {
+    const TextureLevels alone = {skip, false};
+    const Texture single("t", texels_of(300, 217, 4, TexelType::kFloat, values), {}, pool, alone);
+    EXPECT_EQ(single.level_count(), 1u);
+    EXPECT_EQ(single.byte_count(), Texture::byte_count(header, {}, alone));
+    const Texture& whole = skip == 0 ? one : small;
+    for (int i = 0; i < 50; ++i) {
+      const float u = static_cast<float>(i) / 61.0f, v = static_cast<float>(i) / 97.0f;
+      EXPECT_EQ(single.lookup({}, u, v, 0.5f), whole.lookup({Interpolation::kClosest}, u, v));
+      EXPECT_EQ(single.lookup({}, u, v), whole.lookup({}, u, v));
+    }
+  }
   for (int i = 0; i < 200; ++i) {
     const float u = static_cast<float>(i) / 61.0f, v = static_cast<float>(i) / 97.0f;
     const float footprint = static_cast<float>(i % 20) / 200.0f;
