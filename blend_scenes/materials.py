@@ -78,6 +78,45 @@ def colors() -> None:
     set_world((0.8, 0.9, 1.0))
 
 
+def _weave(u: float, v: float) -> tuple[float, ...]:
+    """Threads of two colours, and grain: mostly what is smaller than a pixel far away."""
+    grain = random.Random(int(u * 128) * 128 + int(v * 128)).random()
+    over = (int(u * 32) + int(v * 32)) % 2
+    return (*((0.9, 0.75 * grain, 0.2) if over else (0.05, 0.1, 0.6 * grain)), 1.0)
+
+
+def horizon() -> None:
+    """Pictures that are much finer than pixels: a ground as far as one sees, by UV coordinates and
+    a Mapping; a wall by Box, a ball by Sphere and a slab whose coordinates are stretched."""
+    empty_scene(240, 160)
+    weave = picture("Weave", 128, _weave)
+
+    def woven(
+        tree: Any, source: str, scale: tuple[float, float, float], projection: str = "FLAT"
+    ) -> Any:
+        place = add(tree, "TexCoord").outputs[source]
+        mapped = add(tree, "Mapping", {"Vector": place, "Rotation": (0, 0, 0.3), "Scale": scale})
+        texture = add(tree, "TexImage", {"Vector": mapped.outputs[0]}, image=weave)
+        texture.projection = projection
+        texture.projection_blend = 0.2
+        return diffuse(tree, texture.outputs["Color"])
+
+    _floor(600.0, material("Ground", lambda t: woven(t, "UV", (300.0, 300.0, 1.0))))
+    wall = add_box("Wall", (3.0, 0.6, 2.2), (-2.6, 2.0, 1.1))
+    wall.rotation_euler = (0.0, 0.0, 0.5)
+    wall.data.materials.append(material("Boxed", lambda t: woven(t, "Object", (1.5,) * 3, "BOX")))
+    ball = add_sphere("Ball", 1.1, (0.9, 1.0, 1.1), level=4)
+    ball.data.materials.append(
+        material("Wrapped", lambda t: woven(t, "Generated", (1.0,) * 3, "SPHERE"))
+    )
+    slab = add_box("Slab", (1.2, 1.2, 1.6), (3.4, 2.5, 0.8))
+    slab.data.materials.append(
+        material("Stretched", lambda t: woven(t, "Generated", (12.0, 0.5, 2.0)))
+    )
+    add_camera((0.0, -6.5, 1.7), (0.0, 4.0, 1.1), lens=28.0)
+    set_world((0.8, 0.9, 1.0))
+
+
 def _leaf(u: float, v: float) -> tuple[float, ...]:
     """A pointed leaf with a rib, on nothing."""
     across = abs(u - 0.5)
@@ -144,5 +183,5 @@ def world_nodes() -> None:
 
 
 SCENES: dict[str, Callable[[], None]] = {
-    scene.__name__: scene for scene in (colors, leaves, world_nodes)
+    scene.__name__: scene for scene in (colors, horizon, leaves, world_nodes)
 }

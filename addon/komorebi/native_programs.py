@@ -28,7 +28,9 @@ class Programs:
 
 def load(core: Any, data: SceneData, threads: int, warnings: list[str]) -> Programs:
     """With all textures of a scene in memory; `warnings` gets sentences on what is wrong."""
-    found = native_texture.load(core, images(data), data.texture_limit, threads, warnings.append)
+    found = native_texture.load(
+        core, images(data), data.texture_limit, threads, warnings.append, _averaged(data)
+    )
     return Programs(core, found)
 
 
@@ -39,6 +41,16 @@ def images(data: SceneData) -> list[TextureImage]:
         for program in _programs(data) for op in program.ops if op.texture is not None
     }  # fmt: skip
     return list(found.values())
+
+
+def _averaged(data: SceneData) -> set[bytes]:
+    """The keys of those that are looked up with a footprint, the last operand."""
+    return {
+        op.texture.key
+        for program in _programs(data) for op in program.ops
+        if op.texture is not None and op.op in {"image", "image_box"}
+        and isinstance(op.operands[-1], tuple)
+    }  # fmt: skip
 
 
 def _programs(data: SceneData) -> Iterator[ProgramData]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Container, Iterable
 from functools import partial
 from typing import Any
 
@@ -19,20 +19,23 @@ def load(
     limit: int,
     threads: int,
     warn: Callable[[str], None],
+    averaged: Container[bytes] = (),
 ) -> dict[bytes, Any]:
-    """The core.Texture of each image, by its key: those that the cache knows, or new ones.
+    """The core.Texture of each image, by its key: those that the cache knows, or new ones. Those whose
+    keys are `averaged` have coarser levels.
 
     Pictures of which all levels together take more than `limit` bytes lose their finest levels,
     the largest first, and `warn` is told so. A broken file is magenta, and told as well.
     """
     wanted = {image.key: image for image in images}
     pictures = _pictures(wanted.values())
+    coarser = set(_pictures(i for i in wanted.values() if i.key in averaged))
     made: dict[bytes, Any] = {}
-    skips = _skips(core, pictures, limit, warn)
+    skips = _skips(core, pictures, coarser, limit, warn)
     for key, image in pictures.items():
         if key in skips:
-            known_as = b"texture" + bytes([skips[key]]) + key
-            make = partial(_native, core, image, skips[key], threads)
+            known_as = _known_as(key, skips[key], key in coarser)
+            make = partial(_native, core, image, skips[key], key in coarser, threads)
             try:
                 made[key] = cache.get(known_as, make)
                 continue
@@ -49,7 +52,12 @@ def load(
 def cache_keys(images: Iterable[TextureImage]) -> set[bytes | None]:
     """What cache.make_room must not drop before these are loaded."""
     pictures = _pictures({image.key: image for image in images}.values())
-    return {b"texture" + bytes([skip]) + key for key in pictures for skip in range(MOST_SKIPPED)}
+    ways = [(skip, coarser) for skip in range(MOST_SKIPPED) for coarser in (False, True)]
+    return {_known_as(key, *way) for key in pictures for way in ways}
+
+
+def _known_as(key: bytes, skip: int, coarser: bool) -> bytes:
+    return b"texture" + bytes([skip, coarser]) + key
 
 
 def _pictures(images: Iterable[TextureImage]) -> dict[bytes, TextureImage]:
@@ -62,13 +70,17 @@ def _pictures(images: Iterable[TextureImage]) -> dict[bytes, TextureImage]:
 
 
 def _skips(
-    core: Any, pictures: dict[bytes, TextureImage], limit: int, warn: Callable[[str], None]
+    core: Any,
+    pictures: dict[bytes, TextureImage],
+    coarser: set[bytes],
+    limit: int,
+    warn: Callable[[str], None],
 ) -> dict[bytes, int]:
     """How many levels of each picture are left out; none for a picture that cannot be read."""
     sizes: dict[bytes, int] = {}
     for key, image in pictures.items():
         try:
-            sizes[key] = _byte_count(core, image)
+            sizes[key] = _byte_count(core, image, key in coarser)
         except RuntimeError as error:
             warn(f"{error}, rendered in magenta")
     skips = dict.fromkeys(sizes, 0)
@@ -87,18 +99,18 @@ def _skips(
     return skips
 
 
-def _byte_count(core: Any, image: TextureImage) -> int:
+def _byte_count(core: Any, image: TextureImage, coarser: bool) -> int:
     if image.path is not None:
-        return int(core.Texture.file_bytes(image.path, image.matrix))
+        return int(core.Texture.file_bytes(image.path, image.matrix, coarser))
     if image.pixels is not None:
-        return int(image.pixels.nbytes) * 4 // 3
-    return int(core.Texture.packed_bytes(image.name, image.packed, image.matrix))
+        return int(image.pixels.nbytes) * (4 if coarser else 3) // 3
+    return int(core.Texture.packed_bytes(image.name, image.packed, image.matrix, coarser))
 
 
-def _native(core: Any, image: TextureImage, skip: int, threads: int) -> Any:
+def _native(core: Any, image: TextureImage, skip: int, coarser: bool, threads: int) -> Any:
     how = {
         "color_space": image.color_space, "alpha_mode": image.alpha_mode, "matrix": image.matrix,
-        "skip": skip, "threads": threads,
+        "skip": skip, "coarser": coarser, "threads": threads,
     }  # fmt: skip
     if image.path is not None:
         return core.Texture.from_file(image.path, **how)

@@ -42,22 +42,22 @@ PictureUse picture_use(const std::string& color_space, const std::string& alpha_
 }
 
 std::shared_ptr<Texture> make_texture(const std::string& name, Texels texels, const PictureUse& use,
-                                      std::uint32_t skip, unsigned threads) {
-  return std::make_shared<Texture>(name, std::move(texels), use.color, *build_pool(threads), skip);
+                                      const TextureLevels& kept, unsigned threads) {
+  return std::make_shared<Texture>(name, std::move(texels), use.color, *build_pool(threads), kept);
 }
 
 /// What _image's function `reader` gives; the name is for messages.
 std::shared_ptr<Texture> from_reader(const char* reader, const py::object& file,
                                      const std::string& name, const std::string& color_space,
                                      const std::string& alpha_mode, const py::object& matrix,
-                                     std::uint32_t skip, unsigned threads) {
+                                     const TextureLevels& kept, unsigned threads) {
   const PictureUse use = picture_use(color_space, alpha_mode, matrix);
   const py::capsule owner =
       py::module_::import("komorebi_core._image")
           .attr(reader)(file, name, use.alpha.associate, use.alpha.leave_out, use.alpha.halves);
   auto& texels = *owner.get_pointer<Texels>();
   const py::gil_scoped_release release;
-  return make_texture(name, std::move(texels), use, skip, threads);
+  return make_texture(name, std::move(texels), use, kept, threads);
 }
 
 template <class T>
@@ -110,8 +110,9 @@ void use_alpha(Texels& texels, AlphaUse alpha) {
 
 std::shared_ptr<Texture> from_pixels(const std::string& name, const py::array& pixels,
                                      const std::string& color_space, const std::string& alpha_mode,
-                                     const py::object& matrix, std::uint32_t skip,
+                                     const py::object& matrix, std::uint32_t skip, bool coarser,
                                      unsigned threads) {
+  const TextureLevels kept = {skip, coarser};
   const PictureUse use = picture_use(color_space, alpha_mode, matrix);
   const std::string what = "image \"" + name + "\": pixels";
   const bool bytes = py::isinstance<py::array_t<std::uint8_t>>(pixels);
@@ -119,7 +120,7 @@ std::shared_ptr<Texture> from_pixels(const std::string& name, const py::array& p
                         : texels_from<float>(pixels, what, TexelType::kFloat);
   const py::gil_scoped_release release;
   use_alpha(texels, use.alpha);
-  return make_texture(name, std::move(texels), use, skip, threads);
+  return make_texture(name, std::move(texels), use, kept, threads);
 }
 
 std::shared_ptr<Texture> from_tiles(
@@ -127,20 +128,23 @@ std::shared_ptr<Texture> from_tiles(
   return std::make_shared<Texture>(name, std::vector<Texture::Tile>(tiles.begin(), tiles.end()));
 }
 
-std::size_t bytes_of(const py::object& header, const py::object& matrix) {
+std::size_t bytes_of(const py::object& header, const py::object& matrix, bool coarser) {
   TextureColor color;
   color.has_matrix = !matrix.is_none();
-  return Texture::byte_count(*header.cast<py::capsule>().get_pointer<Texels>(), color);
+  const auto& texels = *header.cast<py::capsule>().get_pointer<Texels>();
+  return Texture::byte_count(texels, color, {0, coarser});
 }
 
-std::size_t file_bytes(const std::string& path, const py::object& matrix) {
+std::size_t file_bytes(const std::string& path, const py::object& matrix, bool coarser) {
   return bytes_of(py::module_::import("komorebi_core._image").attr("read_texel_header")(path),
-                  matrix);
+                  matrix, coarser);
 }
 
-std::size_t packed_bytes(const std::string& name, const py::bytes& file, const py::object& matrix) {
+std::size_t packed_bytes(const std::string& name, const py::bytes& file, const py::object& matrix,
+                         bool coarser) {
   return bytes_of(
-      py::module_::import("komorebi_core._image").attr("read_packed_header")(file, name), matrix);
+      py::module_::import("komorebi_core._image").attr("read_packed_header")(file, name), matrix,
+      coarser);
 }
 
 template <class E, std::size_t N>
@@ -183,7 +187,7 @@ void bind_texture(py::module_& module) {
   const auto use = [](auto&& define) {
     return define(py::kw_only(), py::arg("color_space") = "LINEAR",
                   py::arg("alpha_mode") = "STRAIGHT", py::arg("matrix") = py::none(),
-                  py::arg("skip") = 0, py::arg("threads") = 0);
+                  py::arg("skip") = 0, py::arg("coarser") = true, py::arg("threads") = 0);
   };
   py::class_<Texture, std::shared_ptr<Texture>> texture(
       module, "Texture",
@@ -191,14 +195,15 @@ void bind_texture(py::module_& module) {
 
 color_space: LINEAR, SRGB or NON_COLOR. alpha_mode: STRAIGHT, PREMUL, CHANNEL_PACKED or NONE, as
 Blender has it. matrix: linear Rec. 709 from the picture's own primaries, float64 [3, 3], applied
-after the curve. skip: how many of the finest levels are left out.)");
+after the curve. skip: how many of the finest levels are left out. coarser: whether levels
+beyond the finest are made, which a footprint asks for.)");
   use([&](const auto&... arguments) {
     texture.def_static(
         "from_file",
         [](const std::string& path, const std::string& color_space, const std::string& alpha_mode,
-           const py::object& matrix, std::uint32_t skip, unsigned threads) {
+           const py::object& matrix, std::uint32_t skip, bool coarser, unsigned threads) {
           return from_reader("read_texels", py::str(path), path, color_space, alpha_mode, matrix,
-                             skip, threads);
+                             {skip, coarser}, threads);
         },
         py::arg("path"), arguments...,
         "Reads any image that OpenImageIO can, in its own type of number; RuntimeError naming the "
@@ -207,9 +212,9 @@ after the curve. skip: how many of the finest levels are left out.)");
         "from_bytes",
         [](const std::string& name, const py::bytes& file, const std::string& color_space,
            const std::string& alpha_mode, const py::object& matrix, std::uint32_t skip,
-           unsigned threads) {
+           bool coarser, unsigned threads) {
           return from_reader("read_packed_texels", file, name, color_space, alpha_mode, matrix,
-                             skip, threads);
+                             {skip, coarser}, threads);
         },
         py::arg("name"), py::arg("file"), arguments...,
         "A file in memory; the end of its name may tell its format. RuntimeError naming it.");
@@ -229,9 +234,11 @@ after the curve. skip: how many of the finest levels are left out.)");
           },
           py::arg("name"), "Cycles' magenta.")
       .def_static("file_bytes", &file_bytes, py::arg("path"), py::arg("matrix") = py::none(),
+                  py::arg("coarser") = true,
                   "What a file's Texture would take, from its header alone.")
       .def_static("packed_bytes", &packed_bytes, py::arg("name"), py::arg("file"),
-                  py::arg("matrix") = py::none(), "The same of a file in memory.")
+                  py::arg("matrix") = py::none(), py::arg("coarser") = true,
+                  "The same of a file in memory.")
       .def("lookup", &lookup, py::arg("uv"), py::arg("footprint") = 0.0f, py::kw_only(),
            py::arg("interpolation") = "Linear", py::arg("extension") = "REPEAT",
            py::arg("straight") = false,

@@ -6,10 +6,13 @@
 namespace komorebi {
 namespace {
 
-/// Whether a program needs to know more of a hit than which attributes are there.
+/// Whether a program needs to know more of a hit than which attributes are there; cones have no
+/// part in what lets rays through.
 bool asks_for_point(const Program& program) {
   for (std::uint32_t i = 0; i < kPointInputs; ++i) {
-    if (program.asks(static_cast<PointInput>(i))) return true;
+    const auto input = static_cast<PointInput>(i);
+    if (input == PointInput::kConeX || input == PointInput::kConeY) continue;
+    if (program.asks(input)) return true;
   }
   for (const std::string& name : program.attributes()) {
     if (asks_for_step(name)) return true;

@@ -3,6 +3,7 @@
 #include "core/attribute.h"
 #include "core/warp.h"
 #include "render/camera_axes.h"
+#include "render/ray_cone.h"
 
 namespace komorebi {
 namespace {
@@ -51,19 +52,27 @@ Vec3 tangent(const Placed& placed, const ShadeTask& task) {
   return glm::cross(task.point.normal, detail::unit_or(side, Vec3(0.0f)));
 }
 
-/// How the barycentrics of a hit change when its point moves so far in the triangle's plane.
-Vec2 barycentric_step(const Placed& placed, const ShadeTask& task, const Vec3& world) {
-  if (is_round(placed.mesh->kind)) return Vec2(0.0f);
+/// How the barycentrics of a hit change when its point moves so far in the triangle's plane, one
+/// way and another.
+void barycentric_change(const Placed& placed, const ShadeTask& task, const Vec3* const world[2],
+                        Vec2* const change[2]) {
+  *change[0] = *change[1] = Vec2(0.0f);
+  if (is_round(placed.mesh->kind)) return;
   const Corners at = detail::triangle_corners(*placed.mesh, task.hit.primitive, task.time);
   const Vec3d ab(at.corner[1] - at.corner[0]), ac(at.corner[2] - at.corner[0]);
-  const Vec3d step(placed.instance->local_from_world * world);
   const double bb = glm::dot(ab, ab), bc = glm::dot(ab, ac), cc = glm::dot(ac, ac);
   const double determinant = bb * cc - bc * bc;
-  if (!(determinant > 0.0)) return Vec2(0.0f);
-  const double b = glm::dot(step, ab), c = glm::dot(step, ac);
-  return Vec2(static_cast<float>((b * cc - c * bc) / determinant),
-              static_cast<float>((c * bb - b * bc) / determinant));
+  if (!(determinant > 0.0)) return;
+  for (int k = 0; k < 2; ++k) {
+    const Vec3d step(placed.instance->local_from_world * *world[k]);
+    const double b = glm::dot(step, ab), c = glm::dot(step, ac);
+    *change[k] = Vec2(static_cast<float>((b * cc - c * bc) / determinant),
+                      static_cast<float>((c * bb - b * bc) / determinant));
+  }
 }
+
+/// Attributes of which the name begins so are how much the rest of the name changes by a step.
+constexpr std::string_view kStepNames[] = {"dx:", "dy:", "cone_x:", "cone_y:"};
 
 /// The way back from the world to the film of a camera without a panorama's projection: where a
 /// point is seen, in pixels from the bottom left of the frame.
@@ -122,6 +131,9 @@ void differentials(const RenderContext& context, FilmPlace& film, const ShadeTas
 const ShadePoints& MaterialPoints::fill(const RenderContext& context, const Program& program,
                                         const ShadeTask* tasks, std::uint32_t count) {
   points_.count = count;
+  for (std::size_t pair = 0; pair < kWays / 2; ++pair) {
+    has_steps_[pair] = has_barycentric_steps_[pair] = false;
+  }
   const auto put = [&](PointInput input, const auto& value_of) {
     if (!program.asks(input)) return;
     auto& columns = inputs_[static_cast<std::size_t>(input)];
@@ -180,14 +192,49 @@ const ShadePoints& MaterialPoints::fill(const RenderContext& context, const Prog
       return Placed(context, t).instance->world_from_local[at];
     });
   }
-  if (program.asks(PointInput::kDx) || program.asks(PointInput::kDy)) {
-    Vec3 dx[Program::kLanes], dy[Program::kLanes];
-    for (std::uint32_t i = 0; i < count; ++i) differentials(context, film, tasks[i], dx[i], dy[i]);
-    put(PointInput::kDx, [&](const ShadeTask& t) { return dx[&t - tasks]; });
-    put(PointInput::kDy, [&](const ShadeTask& t) { return dy[&t - tasks]; });
+  for (const auto& [input, way] :
+       {std::pair(PointInput::kDx, kPixelX), std::pair(PointInput::kDy, kPixelY),
+        std::pair(PointInput::kConeX, kConeX), std::pair(PointInput::kConeY, kConeY)}) {
+    if (!program.asks(input)) continue;
+    put(input, [all = steps(context, tasks, count, way), tasks](const ShadeTask& t) {
+      return all[&t - tasks];
+    });
   }
   fill_attributes(context, program, tasks, count);
   return points_;
+}
+
+const Vec3* MaterialPoints::steps(const RenderContext& context, const ShadeTask* tasks,
+                                  std::uint32_t count, Way way) {
+  bool& known = has_steps_[way / 2];
+  if (known) return steps_[way];
+  known = true;
+  FilmPlace film(context.camera);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (way < kConeX) {
+      differentials(context, film, tasks[i], steps_[kPixelX][i], steps_[kPixelY][i]);
+      continue;
+    }
+    const ConeSteps cone = cone_steps(tasks[i]);
+    steps_[kConeX][i] = cone.across;
+    steps_[kConeY][i] = cone.along;
+  }
+  return steps_[way];
+}
+
+const Vec2* MaterialPoints::barycentric_steps(const RenderContext& context, const ShadeTask* tasks,
+                                              std::uint32_t count, Way way) {
+  bool& known = has_barycentric_steps_[way / 2];
+  if (known) return barycentric_steps_[way];
+  known = true;
+  const Way first = way < kConeX ? kPixelX : kConeX;
+  steps(context, tasks, count, first);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec3* const world[] = {&steps_[first][i], &steps_[first + 1][i]};
+    Vec2* const change[] = {&barycentric_steps_[first][i], &barycentric_steps_[first + 1][i]};
+    barycentric_change(Placed(context, tasks[i]), tasks[i], world, change);
+  }
+  return barycentric_steps_[way];
 }
 
 void MaterialPoints::fill_attributes(const RenderContext& context, const Program& program,
@@ -197,13 +244,16 @@ void MaterialPoints::fill_attributes(const RenderContext& context, const Program
   attributes_.resize(4 * kLanes * names.size());
   attribute_columns_.resize(4 * names.size());
   if (names.empty()) return;
-  FilmPlace film(context.camera);
   for (std::size_t a = 0; a < names.size(); ++a) {
     float* const to = &attributes_[4 * kLanes * a];
     for (std::size_t c = 0; c < 4; ++c) attribute_columns_[4 * a + c] = to + c * kLanes;
-    // "dx:" and "dy:" ask for how much the rest changes from pixel to pixel.
-    const bool is_x = names[a].starts_with("dx:"), is_step = is_x || names[a].starts_with("dy:");
-    const char* name = names[a].c_str() + (is_step ? 3 : 0);
+    const char* name = names[a].c_str();
+    const Vec2* change = nullptr;
+    for (std::size_t way = 0; way < kWays; ++way) {
+      if (!names[a].starts_with(kStepNames[way])) continue;
+      name += kStepNames[way].size();
+      change = barycentric_steps(context, tasks, count, static_cast<Way>(way));
+    }
     const MeshView* known = nullptr;
     const AttributeView* found = nullptr;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -215,11 +265,9 @@ void MaterialPoints::fill_attributes(const RenderContext& context, const Program
       }
       Vec4 value(0.0f);
       if (found != nullptr) value = attribute_at(mesh, *found, hit.primitive, hit.u, hit.v);
-      if (found != nullptr && is_step) {
-        Vec3 dx, dy;
-        differentials(context, film, tasks[i], dx, dy);
-        const Vec2 step = barycentric_step(Placed(context, tasks[i]), tasks[i], is_x ? dx : dy);
-        value = attribute_at(mesh, *found, hit.primitive, hit.u + step.x, hit.v + step.y) - value;
+      if (found != nullptr && change != nullptr) {
+        const Vec2 aside(hit.u + change[i].x, hit.v + change[i].y);
+        value = attribute_at(mesh, *found, hit.primitive, aside.x, aside.y) - value;
       }
       for (std::size_t c = 0; c < 4; ++c) to[c * kLanes + i] = value[static_cast<int>(c)];
     }

@@ -28,13 +28,23 @@ class MaterialPoints {
  private:
   void fill_attributes(const RenderContext& context, const Program& program, const ShadeTask* tasks,
                        std::uint32_t count);
+  /// Of all tasks: how far their points move from pixel to pixel, or across the ray's cone.
+  enum Way : std::size_t { kPixelX, kPixelY, kConeX, kConeY, kWays };
+  const Vec3* steps(const RenderContext& context, const ShadeTask* tasks, std::uint32_t count,
+                    Way way);
+  /// The same in barycentric coordinates.
+  const Vec2* barycentric_steps(const RenderContext& context, const ShadeTask* tasks,
+                                std::uint32_t count, Way way);
 
   using Column = float[Program::kLanes];
 
   ShadePoints points_;
   Column inputs_[kPointInputs][3];
-  std::vector<float> attributes_;                // [attributes][4][kLanes]
-  std::vector<const float*> attribute_columns_;  // [attributes][4]
+  Vec3 steps_[kWays][Program::kLanes];
+  Vec2 barycentric_steps_[kWays][Program::kLanes];
+  bool has_steps_[kWays / 2], has_barycentric_steps_[kWays / 2];  // of these tasks, by pairs
+  std::vector<float> attributes_;                                 // [attributes][4][kLanes]
+  std::vector<const float*> attribute_columns_;                   // [attributes][4]
 };
 
 }  // namespace komorebi

@@ -20,6 +20,23 @@ void image(const OpCall& c) {
   }
 }
 
+/// What may be averaged around a place, given two places at the ends of what a ray's cone covers:
+/// the shorter half axis of the ellipse between them, so that nothing is blurred more than it is
+/// hidden between samples, and a seam that one of them lies beyond does not show.
+/// in: place, place, place
+void footprint(const OpCall& c) {
+  for (std::uint32_t i = 0; i < c.count; ++i) {
+    const Vec3 at(c.in[0][i], c.in[1][i], c.in[2][i]);
+    const Vec3 p = Vec3(c.in[3][i], c.in[4][i], c.in[5][i]) - at;
+    const Vec3 q = Vec3(c.in[6][i], c.in[7][i], c.in[8][i]) - at;
+    const Vec3 area = glm::cross(p, q);
+    const float half = 0.5f * (glm::dot(p, p) + glm::dot(q, q));
+    const float less = 0.5f * (glm::dot(p, p) - glm::dot(q, q)), along = glm::dot(p, q);
+    const float longest = half + std::sqrt(less * less + along * along);
+    c.out[0][i] = longest > 0.0f ? std::sqrt(glm::dot(area, area) / longest) : 0.0f;
+  }
+}
+
 /// How much each side of a box shows to a normal of which the coordinates are not negative and add
 /// up to 1; sides are blended near the edges (Image Texture, projection Box).
 Vec3 box_weights(const Vec3& n, float blend) {
@@ -57,15 +74,16 @@ void image_box(const OpCall& c) {
     const float sum = size.x + size.y + size.z;
     const Vec3 w = box_weights(sum > 0.0f ? size / sum : Vec3(1.0f, 0.0f, 0.0f), c.numbers[3]);
     Vec4 value(0.0f);
-    const float footprint = c.in[6][i];
+    // As seen from a side the cone is narrower.
+    const float width = c.in[6][i] / (sum > 0.0f ? std::sqrt(glm::dot(sides, sides)) : 1.0f);
     if (w.x > 0.0f) {
-      value += w.x * c.texture->lookup(how, sides.x < 0.0f ? 1.0f - p.y : p.y, p.z, footprint);
+      value += w.x * c.texture->lookup(how, sides.x < 0.0f ? 1.0f - p.y : p.y, p.z, width * size.x);
     }
     if (w.y > 0.0f) {
-      value += w.y * c.texture->lookup(how, sides.y > 0.0f ? 1.0f - p.x : p.x, p.z, footprint);
+      value += w.y * c.texture->lookup(how, sides.y > 0.0f ? 1.0f - p.x : p.x, p.z, width * size.y);
     }
     if (w.z > 0.0f) {
-      value += w.z * c.texture->lookup(how, sides.z > 0.0f ? 1.0f - p.y : p.y, p.x, footprint);
+      value += w.z * c.texture->lookup(how, sides.z > 0.0f ? 1.0f - p.y : p.y, p.x, width * size.z);
     }
     put(c, i, value);
   }
@@ -112,6 +130,7 @@ void environment(const OpCall& c) {
 }
 
 constexpr OpInfo kOps[] = {
+    {"footprint", footprint, 9, 1},
     {"image", image, 3, 4, 3, false, true},
     {"image_box", image_box, 7, 4, 4, false, true},
     {"wrap_around", wrap_around, 3, 2, 1},

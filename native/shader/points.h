@@ -28,6 +28,8 @@ enum class PointInput : std::uint32_t {
   kRayLength,
   kDx,  ///< how far the position moves from this pixel to the one on its right, in the surface
   kDy,
+  kConeX,    ///< how far the ray's cone reaches in the surface, across the ray
+  kConeY,    ///< and the way that it grazes the surface
   kObjectX,  ///< the object's axes in the world: the columns of its matrix
   kObjectY,
   kObjectZ,
@@ -60,6 +62,8 @@ inline constexpr PointInputInfo kPointInputInfo[kPointInputs] = {
     {"ray_length", 1},
     {"dx", 3},
     {"dy", 3},
+    {"cone_x", 3},
+    {"cone_y", 3},
     {"object_x", 3},
     {"object_y", 3},
     {"object_z", 3},

@@ -20,6 +20,9 @@ struct LevelShape {
   TexelType type;
   std::uint32_t channels;
   bool srgb, weighed;
+  /// Of the finest level the light between its texels counts, which look-ups interpolate as stored:
+  /// where neighbours differ it is darker than their mean.
+  bool finest = false;
 };
 void make_coarser(const LevelShape& shape, const std::byte* from, std::uint32_t width,
                   std::uint32_t height, std::byte* to, ThreadPool& pool);

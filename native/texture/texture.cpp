@@ -33,7 +33,7 @@ std::uint32_t level_of(float width, std::uint32_t texels) {
 }  // namespace
 
 Texture::Texture(std::string name, Texels texels, const TextureColor& color, ThreadPool& pool,
-                 std::uint32_t skip)
+                 const TextureLevels& kept)
     : name_(std::move(name)), srgb_(color.srgb && !color.has_matrix), data_(color.data) {
   const bool fits = texels.width > 0 && texels.height > 0 && texels.width <= kMaxSide &&
                     texels.height <= kMaxSide && (texels.channels == 1 || texels.channels == 4) &&
@@ -49,7 +49,8 @@ Texture::Texture(std::string name, Texels texels, const TextureColor& color, Thr
   type_ = texels.type;
   levels_.push_back({texels.data.get(), texels.width, texels.height});
   finest_ = std::move(texels.data);
-  add_levels(pool, skip);
+  if (kept.coarser || kept.skip > 0) add_levels(pool, kept.skip);
+  if (!kept.coarser) keep_first_level();
 }
 
 Texture::Texture(std::string name, std::vector<Tile> tiles)
@@ -87,10 +88,11 @@ void Texture::add_levels(ThreadPool& pool, std::uint32_t skip) {
   }
   skip = std::min(skip, static_cast<std::uint32_t>(levels_.size() - 1));
   coarser_.resize(room);
-  const LevelShape shape = {type_, channels_, srgb_, !data_};
+  LevelShape shape = {type_, channels_, srgb_, !data_, true};
   for (std::size_t i = 1; i < levels_.size(); ++i) {
     std::byte* to = coarser_.data() + offset[i - 1];
     make_coarser(shape, levels_[i - 1].data, levels_[i - 1].width, levels_[i - 1].height, to, pool);
+    shape.finest = false;
     levels_[i].data = to;
   }
   if (skip == 0) return;
@@ -103,6 +105,16 @@ void Texture::add_levels(ThreadPool& pool, std::uint32_t skip) {
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     levels_[i].data = coarser_.data() + (offset[skip - 1 + i] - first);
   }
+}
+
+void Texture::keep_first_level() {
+  levels_.resize(1);
+  if (finest_) return;
+  const Level& first = levels_[0];
+  Array<std::byte> kept(std::size_t{first.width} * first.height * channels_ * texel_bytes(type_));
+  std::copy_n(coarser_.begin(), kept.size(), kept.begin());
+  coarser_ = std::move(kept);
+  levels_[0].data = coarser_.data();
 }
 
 Vec4 Texture::lookup(const TextureSampling& how, float u, float v, float footprint) const {
@@ -121,8 +133,10 @@ Vec4 Texture::lookup(const TextureSampling& how, float u, float v, float footpri
   const std::uint32_t wanted =
       footprint > 0.0f ? level_of(footprint, std::min(levels_[0].width, levels_[0].height)) : 0;
   const Level& level = levels_[std::min<std::size_t>(wanted, levels_.size() - 1)];
+  TextureSampling taken = how;
+  if (wanted > 0) taken.interpolation = Interpolation::kClosest;
   Vec4 value = with_reader(type_, channels_, level.data, level.width, level.height,
-                           [&](const auto& texel) { return look_up(texel, how, u, v); });
+                           [&](const auto& texel) { return look_up(texel, taken, u, v); });
   if (channels_ == 1) value.w = 1.0f;
   const float alpha = value.w;
   if (how.straight && !data_ && alpha != 1.0f && alpha != 0.0f) {
@@ -150,14 +164,14 @@ std::uint64_t Texture::nonfinite_texels() const {
 }
 
 std::size_t Texture::byte_count(const Texels& header, const TextureColor& color,
-                                std::uint32_t skip) {
+                                const TextureLevels& kept) {
   const TexelType type = color.has_matrix ? converted_type(header.type) : header.type;
   const std::size_t texel = header.channels * texel_bytes(type);
   std::size_t sum = 0;
-  for (std::uint32_t level = skip;; ++level) {
+  for (std::uint32_t level = kept.skip;; ++level) {
     const std::size_t width = side_at(header.width, level), height = side_at(header.height, level);
     sum += texel * width * height;
-    if (width == 1 && height == 1) return sum;
+    if (!kept.coarser || (width == 1 && height == 1)) return sum;
   }
 }
 

@@ -26,15 +26,20 @@ struct TextureColor {
   std::array<float, 9> matrix{};
 };
 
+/// Which levels of a picture are kept.
+struct TextureLevels {
+  std::uint32_t skip = 0;  ///< how many of the finest are left out, to save memory
+  bool coarser = true;     ///< whether there is more than one
+};
+
 /// A picture, or the tiles of one (UDIM), with coarser levels; immutable, to be shared and counted.
 /// What a look-up gives depends on the picture alone, to the bit. Safe from any thread.
 class Texture {
  public:
   /// Numbers that are not finite become 0, and are counted with their texel.
-  /// @param skip  how many of the finest levels are left out, to save memory
   /// @throws std::invalid_argument naming the texture when it has no texels or too many
   Texture(std::string name, Texels texels, const TextureColor& color, ThreadPool& pool,
-          std::uint32_t skip = 0);
+          const TextureLevels& kept = {});
 
   /// Tiles by their UDIM numbers: 1001 + column + 10 · row. Where there is no tile, magenta.
   /// @throws std::invalid_argument
@@ -47,7 +52,9 @@ class Texture {
   /// Colour (linear Rec. 709) and alpha at a place of the picture, (0, 0) to (1, 1), bottom left to
   /// top right.
   /// @param footprint  width of what may be averaged, in the same units; 0: nothing, as in Cycles.
-  ///                   The level is taken of which the texels are no larger than that.
+  ///                   Of the level with the largest texels that are no wider, the texel there is
+  ///                   taken: interpolated as stored, neighbours would not have their mean in
+  ///                   light.
   Vec4 lookup(const TextureSampling& how, float u, float v, float footprint = 0.0f) const;
 
   const std::string& name() const { return name_; }
@@ -67,9 +74,9 @@ class Texture {
   std::size_t byte_count() const;
   std::uint64_t nonfinite_texels() const;
 
-  /// Bytes of all levels of a picture from level `skip` on.
+  /// Bytes of a picture's levels.
   static std::size_t byte_count(const Texels& header, const TextureColor& color,
-                                std::uint32_t skip = 0);
+                                const TextureLevels& kept = {});
 
  private:
   struct Level {
@@ -78,6 +85,7 @@ class Texture {
   };
 
   void add_levels(ThreadPool& pool, std::uint32_t skip);
+  void keep_first_level();
 
   std::string name_;
   bool srgb_ = false, data_ = false;

@@ -256,6 +256,28 @@ def test_gabor():
                   given=given, gabor_type=kind)  # fmt: skip
 
 
+def test_own_mapping():
+    stage = Stage()
+
+    def build(s, kind, axes, scale):
+        output = texture(s, "TexGradient", "Color")
+        own = output.node.texture_mapping
+        own.vector_type = kind
+        own.translation, own.rotation, own.scale = (0.3, -0.2, 0.5), (0.4, -0.7, 1.1), scale
+        own.mapping_x, own.mapping_y, own.mapping_z = axes
+        return output
+
+    for kind in ("POINT", "TEXTURE", "VECTOR", "NORMAL"):
+        for axes in ("XYZ", "ZXY", ("Y", "NONE", "X")):
+            for scale in ((0.5, 2.0, -1.5), (1.0, 0.0, 1.0)):
+                if kind in ("TEXTURE", "NORMAL") and 0.0 in scale:
+                    continue  # a hundred thousand times as large: floats of all kinds
+                compare(
+                    stage, lambda s, given=(kind, tuple(axes), scale): build(s, *given),
+                    f"{kind} {axes} {scale}",
+                )  # fmt: skip
+
+
 def test_unlinked_vector():
     """Then a world's texture is looked up where it is seen."""
     stage = Stage()

@@ -1,11 +1,14 @@
 """Pictures of Image Texture nodes beside Cycles, pixel by pixel, and what becomes of bad ones."""
 
+import struct
+
 import bpy
 import komorebi_core as core
 import numpy as np
 import support
 import textures
 from komorebi import native_texture
+from komorebi.export.exr import chromaticities
 from komorebi.export.texture import export_texture, numbered, sequence_frame
 
 INTERPOLATIONS = ("Closest", "Linear", "Cubic", "Smart")
@@ -172,6 +175,80 @@ def test_sequences():
     assert sequence_frame(user, 3) == 3
     assert numbered("/a1/b2_003x.png", -4) == "/a1/b2_-004x.png"
     assert numbered("/a1/none.png", 4) == "/a1/none.png"
+
+
+def test_films():
+    with support.folder() as folder:
+        scene, node = textures.plate()
+        node.interpolation = "Closest"
+        for number in (1, 2, 3):
+            saved(folder, f"shot_{number:04d}", seed=number)
+        node.image = bpy.data.images.load(str(folder / "shot_0001.png"))
+        node.image.source = "SEQUENCE"
+        node.image_user.frame_duration = 3
+        node.image_user.use_auto_refresh = True
+        textures.show(node, "COLOR")
+        settings = scene.render.image_settings
+        before = settings.file_format
+        if hasattr(settings, "media_type"):
+            settings.media_type = "VIDEO"
+        settings.file_format = "FFMPEG"
+        scene.render.ffmpeg.format, scene.render.ffmpeg.codec = "AVI", "PNG"
+        scene.render.use_file_extension = False
+        scene.render.filepath = str(folder / "film.avi")
+        scene.frame_start, scene.frame_end = 1, 3
+        bpy.ops.render.render(animation=True)
+        if hasattr(settings, "media_type"):
+            settings.media_type = "IMAGE"
+        settings.file_format = before
+        film = bpy.data.images.load(str(folder / "film.avi"))
+        assert film.source == "MOVIE" and film.frame_duration == 3
+        node.image = film
+        user, seen, warnings = node.image_user, {}, []
+        for user.use_cyclic, user.frame_offset, frames in (
+            (False, 0, (1, 2, 3, 7, 2)), (True, 0, (4, 5)), (False, 1, (1, 2)),
+        ):  # fmt: skip
+            user.frame_duration = 3
+            for frame in frames:
+                scene.frame_set(frame)
+                textures.compare(scene, node, "COLOR", folder, warnings=warnings)
+                seen.setdefault(frame, textures.ours(node, "COLOR"))
+        assert not warnings and not np.allclose(seen[2], seen[7])
+        assert not bpy.data.textures.keys()
+        (folder / "film.avi").write_bytes(b"no film")
+        node.image = bpy.data.images.load(str(folder / "film.avi"))
+        node.image.source = "MOVIE"
+        assert np.allclose(textures.ours(node, "COLOR", warnings), (1, 0, 1))
+        assert "film" in warnings[0] and "magenta" in warnings[0], warnings
+
+
+def test_primaries_of_files():
+    with support.folder() as folder:
+        image = saved(folder, "wide", "OPEN_EXR", "32")
+        path = folder / "wide.exr"
+        data = path.read_bytes()
+        warnings = []
+        export_texture(image, None, 1, warnings.append)
+        assert not warnings
+        aces = struct.pack("<8f", 0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767)
+        name = b"chromaticities\0"
+        at = data.find(name)
+        if at >= 0:
+            at += 2 * len(name) + 4
+            data = data[:at] + aces + data[at + 32 :]
+        else:
+            data = data[:8] + 2 * name + struct.pack("<i", 32) + aces + data[8:]
+        path.write_bytes(data)
+        assert chromaticities(data)[0] == np.float32(0.713)
+        for cut in range(0, 400, 7):
+            chromaticities(data[:cut])
+        image.colorspace_settings.name = spaces("Linear", "Linear Rec.709")[0]
+        export_texture(image, None, 1, warnings.append)
+        assert "wide.exr has other primaries" in warnings[0], warnings
+        image.colorspace_settings.name = "Non-Color"
+        warnings.clear()
+        export_texture(image, None, 1, warnings.append)
+        assert not warnings
 
 
 def test_missing_and_broken():

@@ -215,7 +215,7 @@ inline std::shared_ptr<Scene> moving_scene(Builder builder = Builder::kLinear,
 }
 
 /// Two materials of many lobes that ask much of their points: one with holes by lot, relief and
-/// light of its own, one that lets light through.
+/// light of its own, one that lets light through. To bounces both reflect by their cones' width.
 inline std::vector<Material> many_lobes() {
   MadeProgram made;
   const auto third = MadeProgram::number(0.3);
@@ -226,6 +226,12 @@ inline std::vector<Material> many_lobes() {
   const auto of = [&](const MadeProgram::Vec& emission, bool transmits) {
     Material material;
     material.camera = SurfaceProgram(made.program({emission, clear, MadeProgram::number(0.1), share,
+                                                   tilted, MadeProgram::color(0.2, 0.3, 0.1)}),
+                                     {{false, true}, {transmits, false}});
+    const auto width = made.footprint(made.input("position"));
+    const auto wide =
+        made.each("add", share, made.each("multiply", MadeProgram::color(1, 2, 3), width));
+    material.bounce = SurfaceProgram(made.program({emission, clear, MadeProgram::number(0.1), wide,
                                                    tilted, MadeProgram::color(0.2, 0.3, 0.1)}),
                                      {{false, true}, {transmits, false}});
     material.clear = made.program({clear});

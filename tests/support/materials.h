@@ -39,6 +39,15 @@ class MadeProgram {
     }
     return add(std::move(made), outputs);
   }
+  /// What of a value the ray's cone covers, if it changes as the position does.
+  Vec footprint(const Vec& place) {
+    Vec all = place;
+    for (const char* way : {"cone_x", "cone_y"}) {
+      const Vec aside = each("add", place, input(way));
+      all.insert(all.end(), aside.begin(), aside.end());
+    }
+    return add({"footprint", all, {}, {}, "", nullptr}, 1);
+  }
 
   std::shared_ptr<const Program> program(const std::vector<Vec>& outputs) const {
     std::vector<Operand> all;

@@ -11,11 +11,16 @@ import numpy as np
 
 from ..errors import RenderError
 from ..scene_data import EnvironmentImage, FloatArray
+from .color_spaces import known_space
 from .names import name_of
+from .texture import unknown_space, warn_of_primaries
 
-# Blender's names of spaces that are linear Rec.709 or hold numbers rather than colours.
-LINEAR_SPACES = {"Linear", "Linear Rec.709", "Non-Color", "Raw"}
-SRGB_SPACES = {"sRGB"}
+
+def can_be_map(image: Any) -> bool:
+    """Whether a picture may be a world's map as it is. Tiles, films and colours of other primaries
+    go through a program."""
+    known = known_space(image.colorspace_settings.name)
+    return image.source not in {"TILED", "MOVIE"} and (known is None or known[1] is None)
 
 
 def export_image(node: Any, warn: Callable[[str], None]) -> EnvironmentImage | None:
@@ -30,21 +35,19 @@ def export_image(node: Any, warn: Callable[[str], None]) -> EnvironmentImage | N
     space = _color_space(image, warn)
     if image.source in {"FILE", "SEQUENCE"} and image.packed_file is None and not image.is_dirty:
         path = _file(image, node.image_user)
+        warn_of_primaries(image, path, (space, "", None), warn)
         return EnvironmentImage(name_of(image), path=path, color_space=space)
-    if image.source == "TILED":
-        warn("tiles (UDIM) are not supported yet, only the first is rendered")
-    elif image.source == "MOVIE":
-        warn("films are not supported yet, one of its pictures is rendered")
     return EnvironmentImage(name_of(image), pixels=_pixels(image, space))
 
 
 def _color_space(image: Any, warn: Callable[[str], None]) -> str:
-    name = image.colorspace_settings.name
-    if name in SRGB_SPACES:
-        return "SRGB"
-    if name not in LINEAR_SPACES:
-        warn(f"colour space {name} is not supported yet, taken as linear Rec.709")
-    return "LINEAR"
+    settings = image.colorspace_settings
+    if settings.is_data:
+        return "LINEAR"
+    known = known_space(settings.name)
+    if known is None:
+        warn(unknown_space(image))
+    return "LINEAR" if known is None else known[0]
 
 
 def _file(image: Any, user: Any) -> str:

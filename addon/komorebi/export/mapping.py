@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -32,6 +33,36 @@ def mapping_matrix(kind: str, rotation: Sequence[float], scale: Sequence[float])
     if kind == "NORMAL":
         return turn @ np.diag(inverse)
     return turn @ np.diag(factor)  # POINT, VECTOR
+
+
+def own_mapping(node: Any) -> DoubleArray | None:
+    """What a texture node does to coordinates before it looks them up, which no panel shows but
+    scripts and files of 2.7x set (`texture_mapping`) [3, 4], as Cycles has it; None: nothing.
+
+    The type NORMAL also makes them unit.
+    """
+    own = getattr(node, "texture_mapping", None)  # White Noise has none
+    if own is None:
+        return None
+    axes = (own.mapping_x, own.mapping_y, own.mapping_z)
+    location, rotation, scale = (
+        np.array(v, np.float64) for v in (own.translation, own.rotation, own.scale)
+    )
+    if axes == ("X", "Y", "Z") and not (location.any() or rotation.any() or (scale != 1.0).any()):
+        return None
+    kind, turn = own.vector_type, euler_matrix(rotation)  # type: ignore[arg-type]
+    if kind in {"TEXTURE", "NORMAL"}:
+        scale = np.where(abs(scale) < 1e-5, np.where(scale < 0.0, -1e-5, 1e-5), scale)
+    if kind == "TEXTURE":
+        linear = np.diag(1.0 / scale) @ turn.T
+        location = linear @ -location
+    elif kind == "NORMAL":
+        linear, location = turn @ np.diag(1.0 / scale), np.zeros(3)
+    else:
+        linear = turn @ np.diag(scale)
+        location = location if kind == "POINT" else np.zeros(3)
+    chosen = np.array([[float(axis == name) for name in "XYZ"] for axis in axes])
+    return np.column_stack([linear @ chosen, location])
 
 
 def nearest_rotation(matrix: DoubleArray) -> tuple[DoubleArray, bool]:

@@ -8,6 +8,7 @@ from ..passes import value_columns
 from ..scene_data import MaterialData, Materials, ProgramData
 from .aovs import AovReader
 from .names import name_of
+from .shader.nodes_coordinates import STEPS
 from .surface import export_surface, look_of
 from .surroundings import surroundings_of
 
@@ -77,12 +78,13 @@ def _asks_random(program: ProgramData) -> bool:
 
 
 def _attributes(material: MaterialData) -> frozenset[str]:
-    """What of a mesh the programs read; steps ("dx:", "dy:") follow from the same arrays. The
-    Tangent of Geometry nodes lies around generated coordinates."""
+    """What of a mesh the programs read; steps aside follow from the same arrays. The Tangent of
+    Geometry nodes lies around generated coordinates."""
     names = set()
     for op in (op for program in material.programs() for op in program.ops):
         if op.op == "attribute":
-            names.add(op.name.removeprefix("dx:").removeprefix("dy:"))
+            way, _, rest = op.name.partition(":")
+            names.add(rest if way in STEPS else op.name)
         elif op.op == "input" and op.name == "tangent":
             names.add("generated")
     return frozenset(names)

@@ -30,6 +30,7 @@ class Look:
     skips_glass: bool = True
     has_light: bool = True  # False for ambient occlusion, which knows no colour and no lamps
     later: Look | None = None  # how surfaces look to bounces; None: the same
+    averages: bool = False  # whether rays bounce, to which pictures are averaged within their cone
 
 
 def look_of(scene: Any) -> Look:
@@ -39,9 +40,9 @@ def look_of(scene: Any) -> Look:
     if settings.surface == "CLAY":
         look = Look(tuple(settings.clay_color), settings.clay_bump, settings.clay_glass == "SKIP")
     if settings.method == "WORLD_LIGHT":
-        return look
+        return replace(look, averages=settings.bounces > 0)
     # What is seen is white; what its light comes from is not.
-    later = look if settings.ao_indirect_bounces > 0 else None
+    later = replace(look, averages=True) if settings.ao_indirect_bounces > 0 else None
     return replace(look, clay=look.clay and WHITE_CLAY, has_light=False, later=later)
 
 
@@ -61,18 +62,26 @@ def export_surface(
     if output is None:
         return _plain((0.0, 0.0, 0.0), look)
     owner = f'material "{name_of(material)}"'
-    compilers = {
-        kind: Compiler(engine, owner, Ray(kind), surroundings=around)
-        for kind in ("CAMERA", "DIFFUSE", "SHADOW")
-    }
+
+    def compiler(kind: str) -> Compiler:
+        return Compiler(engine, owner, Ray(kind), surroundings=around)
+
+    compilers = {kind: compiler(kind) for kind in ("CAMERA", "DIFFUSE", "SHADOW")}
     camera = _surface(compilers["CAMERA"], output, look)
     ops, clear = camera.program.ops, camera.program.outputs[3:6]
     heeds_ray = compilers["CAMERA"].heeds_ray
-    bounce = None
-    if heeds_ray or look.later is not None:
-        bounce = _surface(compilers["DIFFUSE"], output, look.later or look)
-        if bounce.program.key() == camera.program.key():
-            bounce = None
+    bounce, later = None, look.later or look
+    if later.averages and compilers["CAMERA"].has_pictures:
+        compilers["DIFFUSE"].averages = True
+        bounce = _surface(compilers["DIFFUSE"], output, later)
+        if any(isinstance(c, tuple) for c in bounce.program.outputs[3:6]):
+            # Whether a ray is let through is decided by pictures as they are, and what is left is
+            # divided by how often that is not so.
+            bounce, compilers["DIFFUSE"] = None, compiler("DIFFUSE")
+    if bounce is None and (heeds_ray or look.later is not None):
+        bounce = _surface(compilers["DIFFUSE"], output, later)
+    if bounce is not None and bounce.program.key() == camera.program.key():
+        bounce = None
     if heeds_ray:
         shadow = compilers["SHADOW"]
         clear = _transparency(shadow, _closures(shadow, output), look)

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..scene_data import DoubleArray, FloatArray, TextureImage
 from .color_spaces import known_space
+from .exr import HEADER_BYTES, chromaticities, is_rec_709
 from .names import name_of
 
 Warn = Callable[[str], None]
@@ -31,11 +32,13 @@ def export_texture(image: Any, user: Any, frame: int, warn: Warn) -> TextureImag
     shape = _shape(image, warn)
     if image.source == "TILED":
         return _tiles(image, shape, warn)
-    if image.source == "MOVIE":
-        warn("films are not supported yet, one of its pictures is rendered")
+    if image.source == "MOVIE" and user is not None:
+        show_frame(image, sequence_frame(user, frame))
     elif image.source in {"FILE", "SEQUENCE"} and not image.is_dirty:
         if image.packed_file is None:
-            return _file(image, _path(image, user, frame), shape, warn)
+            path = _path(image, user, frame)
+            warn_of_primaries(image, path, shape, warn)
+            return _file(image, path, shape, warn)
         if not image.is_float and image.alpha_mode != "PREMUL":
             return _packed(image, image.packed_file, image.filepath, shape)
     return _pixels(image, shape, warn)
@@ -63,13 +66,57 @@ def numbered(path: str, number: int) -> str:
     return os.path.join(folder, name[:first] + sign + digits + name[last:])
 
 
+def show_frame(image: Any, number: int) -> None:
+    """Makes image.pixels those of a film's picture.
+
+    Blender decodes it for whoever looks at it by an ImageUser of that frame, and a legacy texture
+    can be looked at from here.
+    """
+    texture: Any = bpy.data.textures.new("Komorebi", "IMAGE")
+    try:
+        texture.image = image
+        texture.image_user.frame_duration = max(image.frame_duration, 1)
+        texture.image_user.frame_current = number
+        texture.evaluate((0.0, 0.0, 0.0))
+    finally:
+        bpy.data.textures.remove(texture)
+
+
+def unknown_space(image: Any) -> str:
+    """What is said of a picture in a colour space that is not known."""
+    space = image.colorspace_settings.name
+    return (
+        f'image "{name_of(image)}": colour space {space} is not supported yet, '
+        "taken as linear Rec.709"
+    )
+
+
+def warn_of_primaries(image: Any, path: str, space: Shape, warn: Warn) -> None:
+    """Where an OpenEXR file has other primaries than its colour space in Blender says, it is shown
+    as that says, as in Cycles."""
+    if space[0] == "NON_COLOR" or space[2] is not None:
+        return
+    try:
+        with open(path, "rb") as file:
+            colors = chromaticities(file.read(HEADER_BYTES))
+    except (OSError, ValueError):
+        return  # missing, which is said elsewhere
+    if colors is not None and not is_rec_709(colors):
+        name = image.colorspace_settings.name
+        warn(
+            f'image "{name_of(image)}": the file {path} has other primaries than Rec.709, '
+            f"rendered in its colour space {name}"
+        )
+
+
 def _shape(image: Any, warn: Warn) -> Shape:
     settings = image.colorspace_settings
     if settings.is_data:
         return "NON_COLOR", image.alpha_mode, None
     known = known_space(settings.name)
     if known is None:
-        warn(f"colour space {settings.name} is not supported yet, taken as linear Rec.709")
+        if settings.name:  # a picture that cannot be read has none
+            warn(unknown_space(image))
         known = "LINEAR", None
     return known[0], image.alpha_mode, known[1]
 

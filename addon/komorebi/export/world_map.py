@@ -8,8 +8,8 @@ import numpy as np
 
 from ..scene_data import DoubleArray, WorldData
 from . import nodes
-from .image import export_image
-from .mapping import mapping_matrix, nearest_rotation
+from .image import can_be_map, export_image
+from .mapping import mapping_matrix, nearest_rotation, own_mapping
 from .shader import Compiler
 
 EMITTERS = {"BACKGROUND", "EMISSION"}
@@ -26,17 +26,17 @@ def read_map(compiler: Compiler, surface: Any) -> WorldData | None:
     if strength is None or strength < 0.0 or feeding is None:
         return None
     node = feeding.node
-    if node.type != "TEX_ENVIRONMENT" or node.image is None or node.image.source == "TILED":
+    if node.type != "TEX_ENVIRONMENT" or node.image is None or not can_be_map(node.image):
         return None
     if node.projection != "EQUIRECTANGULAR" or node.interpolation != "Linear":
         return None
     direction = _direction(node.inputs["Vector"])
     if direction is None:
         return None
-    old = node.texture_mapping
-    turn, exact = nearest_rotation(
-        mapping_matrix(old.vector_type, old.rotation, old.scale) @ direction
-    )
+    own = own_mapping(node)
+    if own is not None and own[:, 3].any():
+        return None
+    turn, exact = nearest_rotation(direction if own is None else own[:, :3] @ direction)
     if not exact:
         return None
     image = export_image(node, lambda what: compiler.warn(node, what))

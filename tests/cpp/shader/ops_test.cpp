@@ -1,7 +1,9 @@
 // All operations of programs, run over numbers of every kind.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -16,7 +18,7 @@ constexpr std::uint32_t kCount = 64;
 std::vector<const OpInfo*> ops() {
   std::vector<const OpInfo*> all;
   for (const auto& family : {arithmetic_ops(), math_ops(), vector_ops(), color_ops(), table_ops(),
-                             spectrum_ops(), surface_ops()}) {
+                             spectrum_ops(), surface_ops(), texture_ops()}) {
     for (const OpInfo& op : family) all.push_back(&op);
   }
   return all;
@@ -87,6 +89,38 @@ TEST(Ops, AnyNumberInAnyLane) {
       }
       EXPECT_EQ(together, apart) << op->name;
     }
+  }
+}
+
+TEST(Ops, FootprintIsTheShorterHalfAxisOfAnEllipse) {
+  const OpInfo& op = *find_op("footprint");
+  std::mt19937 random(5);
+  const auto number = [&] { return static_cast<float>(random() % 2001) / 1000.0f - 1.0f; };
+  for (int k = 0; k < 200; ++k) {
+    float values[9], width = 0.0f;
+    for (float& v : values) v = number();
+    if (k % 2 == 0) values[2] = values[5] = values[8] = 0.0f;  // in a picture's plane
+    const float* in[9];
+    for (int i = 0; i < 9; ++i) in[i] = &values[i];
+    float* out[] = {&width};
+    OpCall call;
+    call.count = 1;
+    call.in = in;
+    call.out = out;
+    op.run(call);
+    double shortest = 1e9;
+    for (int step = 0; step < 20000; ++step) {
+      const double angle = 3.141592653589793 * step / 20000;
+      double square = 0.0;
+      for (int c = 0; c < 3; ++c) {
+        const double p = double{values[3 + c]} - double{values[c]};
+        const double q = double{values[6 + c]} - double{values[c]};
+        const double along = std::cos(angle) * p + std::sin(angle) * q;
+        square += along * along;
+      }
+      shortest = std::min(shortest, std::sqrt(square));
+    }
+    EXPECT_NEAR(double{width}, shortest, 1e-3) << k;
   }
 }
 

@@ -72,6 +72,9 @@ class Compiler:
         self.camera_from_world = surroundings.camera_from_world
         # what is compiled for a point aside: "dx" or "dy", and how many such steps
         self.shift: tuple[str, Value] | None = None
+        # whether pictures may be averaged within a ray's cone; else they are read as they are
+        self.averages = False
+        self.has_pictures = False  # whether any is read that could be averaged
         self.notes: set[str] = set()  # what is rendered as something simpler, by design
         self.suns: list[Any] = []  # nodes_sky.SkySun: discs that a map of the world leaves out
         self._engine = engine
@@ -132,6 +135,15 @@ class Compiler:
         finally:
             self.shift = before
 
+    @contextmanager
+    def finest(self) -> Iterator[None]:
+        """What is compiled meanwhile reads pictures as they are."""
+        before, self.averages = self.averages, False
+        try:
+            yield
+        finally:
+            self.averages = before
+
     # The walk.
 
     def _source(self, socket: Any) -> tuple[Value | Closures, str] | None:
@@ -178,7 +190,7 @@ class Compiler:
         )
         if inner is None:
             return None
-        key = (*self._path(), group.as_pointer(), feeding.identifier, self.shift)
+        key = (*self._path(), group.as_pointer(), feeding.identifier, self.shift, self.averages)
         if key in self._open or len(self._open) > MAX_DEPTH:
             self.warn(group, "is part of a circle or of too long a row of nodes, and left out")
             return None
@@ -196,7 +208,7 @@ class Compiler:
         return self.builder.convert(value, kind, inner.type), inner.type  # type: ignore[arg-type]
 
     def _outputs(self, node: Any) -> Outputs | None:
-        key = (*self._path(), node.as_pointer(), self.shift)
+        key = (*self._path(), node.as_pointer(), self.shift, self.averages)
         known = self._done.get(key)
         if known is not None:
             return known

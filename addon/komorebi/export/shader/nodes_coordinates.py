@@ -16,6 +16,7 @@ from .compiler import Compiler, Outputs, node
 from .values import Value
 
 ZERO: Value = (0.0, 0.0, 0.0)
+STEPS = ("dx", "dy", "cone_x", "cone_y")  # ways of Compiler.shift
 
 
 def axes(compiler: Compiler) -> Value:
@@ -49,8 +50,8 @@ def object_point(compiler: Compiler) -> Value:
 def attribute(compiler: Compiler, name: str) -> Value:
     """Red, green, blue and alpha of an attribute; a world has none.
 
-    Bump asks for "dx:" + name and "dy:" + name as well: how much the attribute changes from this
-    pixel to the one on its right, and to the one above.
+    Aside, "dx:" + name (or another of STEPS) is asked for as well: how much the attribute changes
+    from this pixel to the one on its right, to the one above, or across the ray's cone.
     """
     if compiler.is_world:
         return (0.0,) * 4
@@ -74,12 +75,6 @@ def default_vector(compiler: Compiler, node: Any) -> Value:
     if node.type == "TEX_ENVIRONMENT":
         return position(compiler)
     return generated(compiler)
-
-
-def vector_input(compiler: Compiler, node: Any) -> Value:
-    """A texture's input Vector, or what stands for it."""
-    socket = node.inputs["Vector"]
-    return compiler.value(socket) if compiler.is_linked(socket) else default_vector(compiler, node)
 
 
 def normal_input(compiler: Compiler, node: Any) -> Value:

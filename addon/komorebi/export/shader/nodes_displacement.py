@@ -37,9 +37,10 @@ def relief(compiler: Compiler, socket: Any) -> Value | None:
         return None
     b = compiler.builder
     normal = b.input("normal")
-    heights = b.dot(compiler.value(socket), normal)
-    for way in ("dx", "dy"):
-        with compiler.shifted(way, ONE):
-            heights += b.dot(compiler.value(socket), normal)
+    with compiler.finest():
+        heights = b.dot(compiler.value(socket), normal)
+        for way in ("dx", "dy"):
+            with compiler.shifted(way, ONE):
+                heights += b.dot(compiler.value(socket), normal)
     place = normal + b.input("dx") + b.input("dy")
     return b.op("bump", place + heights + ONE + ONE + ONE, 3)

@@ -10,9 +10,16 @@ from ..names import name_of
 from ..texture import export_texture
 from .compiler import Compiler, Outputs, node
 from .texture_inputs import texture_vector
+from .values import Value
 
 INTERPOLATIONS = ("Closest", "Linear", "Cubic", "Smart")
 EXTENSIONS = ("REPEAT", "EXTEND", "CLIP", "MIRROR")
+# What coordinates may be made of to be worked out two more times for a ray's cone.
+QUICK = {
+    "input", "attribute", "add", "subtract", "multiply", "divide", "multiply_add", "transform",
+    "rotate_euler", "to_axes", "from_axes", "wrap_around",
+}  # fmt: skip
+FINEST: Value = (0.0,)
 MAGENTA: Outputs = {"Color": (1.0, 0.0, 1.0), "Alpha": (1.0,)}
 
 
@@ -22,21 +29,17 @@ def image_texture(compiler: Compiler, node: Any) -> Outputs:
     if picture is None:
         return MAGENTA
     b = compiler.builder
-    place = texture_vector(compiler, node)
+    place = _place(compiler, node)
+    width = _footprint(compiler, node)
     # Cycles divides colours by alpha where the node's Alpha is used.
     how = (_interpolation(node), float(EXTENSIONS.index(node.extension)),
            float(node.outputs["Alpha"].is_linked))  # fmt: skip
-    finest = (0.0,)
     if node.projection == "BOX":
-        operands = (*place, *b.input("object_normal"), *finest)
+        operands = (*place, *b.input("object_normal"), *width)
         numbers = (*how, float(node.projection_blend))
         color = b.op("image_box", operands, 4, numbers=numbers, texture=picture)
     else:
-        uv = place[:2]
-        if node.projection in {"SPHERE", "TUBE"}:
-            around = (float(node.projection == "TUBE"),)
-            uv = b.op("wrap_around", place, 2, numbers=around)
-        color = b.op("image", (*uv, *finest), 4, numbers=how, texture=picture)
+        color = b.op("image", (*place[:2], *width), 4, numbers=how, texture=picture)
     return {"Color": color[:3], "Alpha": color[3:]}
 
 
@@ -52,6 +55,35 @@ def environment_texture(compiler: Compiler, node: Any) -> Outputs:
     vector = texture_vector(compiler, node)
     color = compiler.builder.op("environment", vector, 4, numbers=numbers, texture=picture)
     return {"Color": color[:3]}
+
+
+def _place(compiler: Compiler, node: Any) -> Value:
+    """Where an Image Texture is looked up: three numbers, of which Box takes all."""
+    place = texture_vector(compiler, node)
+    if node.projection == "BOX":
+        return place
+    if node.projection in {"SPHERE", "TUBE"}:
+        around = (float(node.projection == "TUBE"),)
+        place = compiler.builder.op("wrap_around", place, 2, numbers=around)
+    return (*place[:2], 0.0)
+
+
+def _footprint(compiler: Compiler, node: Any) -> Value:
+    """How much of the picture the ray's cone covers."""
+    if node.interpolation == "Closest":
+        return FINEST
+    compiler.has_pictures = True
+    if not compiler.averages:
+        return FINEST
+    b = compiler.builder
+    first = len(b.ops)
+    with compiler.finest():
+        place = _place(compiler, node)
+        for way in ("cone_x", "cone_y"):
+            with compiler.shifted(way, (1.0,)):
+                place += _place(compiler, node)
+    quick = all(op.op in QUICK for op in b.ops[first:])
+    return b.op("footprint", place) if quick else FINEST
 
 
 def _interpolation(node: Any) -> float:

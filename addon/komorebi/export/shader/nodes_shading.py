@@ -75,7 +75,9 @@ def _leaning(b: Builder, own: Value, mapped: Value, strength: Value) -> Value:
 @node("NORMAL_MAP")
 def normal_map(compiler: Compiler, node: Any) -> Outputs:
     b, space = compiler.builder, node.space
-    strength, color = compiler.inputs(node, "Strength", "Color")
+    strength = compiler.value(node.inputs["Strength"])
+    with compiler.finest():  # the mean of normals is no normal
+        color = compiler.value(node.inputs["Color"])
     own = b.input("normal")
     parts = b.each("multiply_add", color, (2.0,), (-1.0,))
     x, y, z = parts[:1], parts[1:2], parts[2:]
@@ -122,10 +124,11 @@ def bump(compiler: Compiler, node: Any) -> Outputs:
     width = compiler.value(node.inputs["Filter Width"]) if has_width else ONE
     if node.invert:
         distance = b.multiply(distance, (-1.0,))
-    heights = compiler.value(height)
-    for way in ("dx", "dy"):
-        with compiler.shifted(way, width):
-            heights += compiler.value(height)
+    with compiler.finest():
+        heights = compiler.value(height)
+        for way in ("dx", "dy"):
+            with compiler.shifted(way, width):
+                heights += compiler.value(height)
     place = normal + b.input("dx") + b.input("dy")
     raised = b.op("bump", place + heights + distance + strength + width, 3)
     return {node.outputs[0].identifier: raised}

@@ -10,7 +10,7 @@ from typing import Any
 from ... import core
 from ...scene_data import FloatArray, Value
 from .compiler import Compiler, Outputs, node
-from .nodes_coordinates import default_vector, vector_input
+from .texture_inputs import texture_vector
 
 OPS = {"PREETHAM": "sky_preetham", "HOSEK_WILKIE": "sky_hosek"}  # all else: sky_scattering
 SMALLEST_SUN = 0.0005  # radians; Cycles draws none that is smaller
@@ -51,9 +51,7 @@ def sky_texture(compiler: Compiler, node: Any) -> Outputs:
     a map that is made of the sky would have to be enormous to hold a sun. A ray towards a sun sees
     the sky and the disc's mean radiance, wherever it looks."""
     data = _read(node)
-    # The input is not there for models that Blender gives none.
-    has_vector = "Vector" in node.inputs
-    direction = vector_input(compiler, node) if has_vector else default_vector(compiler, node)
+    direction = texture_vector(compiler, node)
     table = None if data.model in OPS else _table(_of_table(data))
     disc: Value = (0.0, 0.0, 0.0)
     if data.sun_disc and compiler.ray.kind != "CAMERA":

@@ -4,29 +4,24 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..mapping import own_mapping
 from .compiler import Compiler
 from .nodes_coordinates import default_vector
 from .values import Value
 
-# Where a texture's own mapping, which no panel shows, leaves coordinates as they are.
-_NO_MAPPING: dict[str, Any] = {
-    "translation": (0.0, 0.0, 0.0), "rotation": (0.0, 0.0, 0.0),
-    "scale": (1.0, 1.0, 1.0), "mapping_x": "X", "mapping_y": "Y", "mapping_z": "Z",
-    "use_min": False, "use_max": False,
-}  # fmt: skip
-
 
 def texture_vector(compiler: Compiler, node: Any) -> Value:
     """The coordinates that a texture is looked up at."""
-    mapping = getattr(node, "texture_mapping", None)
-    for name, usual in _NO_MAPPING.items():
-        value = getattr(mapping, name, usual)  # White Noise has no mapping
-        value = tuple(value) if isinstance(usual, tuple) else value
-        if value != usual:
-            compiler.warn(node, "texture_mapping is not supported yet, left out")
-            break
-    socket = node.inputs["Vector"]
-    return compiler.value(socket) if compiler.is_linked(socket) else default_vector(compiler, node)
+    b = compiler.builder
+    socket = node.inputs.get("Vector")  # of skies, some models have none
+    linked = socket is not None and compiler.is_linked(socket)
+    place = compiler.value(socket) if linked else default_vector(compiler, node)
+    mapping = own_mapping(node)
+    if mapping is not None:
+        place = b.op("transform", place, 3, numbers=tuple(map(float, mapping.ravel())))
+        if node.texture_mapping.vector_type == "NORMAL":
+            place = b.op("normalize", place, 3)
+    return place
 
 
 def parameter(compiler: Compiler, node: Any, identifier: str, otherwise: float = 0.0) -> Value:
