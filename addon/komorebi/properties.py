@@ -61,6 +61,11 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         description="Camera samples a pixel; with a noise threshold the most that one may take",
         default=32, min=1, max=1 << 24,
     )  # fmt: skip
+    preview_samples: IntProperty(
+        name="Viewport Samples",
+        description="Camera samples a pixel in the viewport; 0 goes on for ever",
+        default=64, min=0, max=1 << 24,
+    )  # fmt: skip
     # Off, though Cycles has it on: at these few samples it is no sooner at the same error (ambient
     # occlusion, 192 × 108: 0.0047 in 0.78 s both ways; 8 % sooner at 0.0028), and parts of a
     # picture that are to be put together need every sample. The threshold is automatic, for

@@ -51,6 +51,9 @@ struct Settings {
   /// camera sees without and with bounces; names, meaning and values are those of Cycles.
   float sample_clamp_direct = 0.0f, sample_clamp_indirect = 10.0f;
   EnvironmentSampling environment_sampling = EnvironmentSampling::kProduct;
+  /// Whether parts of the sky that surfaces see get the light rays, which is measured before the
+  /// first sample (SkyGuide). It is for pictures that are soon thrown away that it does not pay.
+  bool guides_light = true;
   PixelFilter pixel_filter = PixelFilter::kBlackmanHarris;
   float filter_width = 1.5f;    ///< pixels
   bool use_progressive = true;  ///< refine the whole frame, not one tile to its end

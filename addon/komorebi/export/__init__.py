@@ -62,6 +62,18 @@ def export_scene(
     return data
 
 
+def export_view(engine: Any, depsgraph: Any, unchanged: Unchanged) -> SceneData:
+    """What a viewport's depsgraph shows, without a camera: the view has one of its own."""
+    unchanged.begin(depsgraph)
+    data = SceneData(
+        cameras={},
+        world=export_sky(engine, depsgraph.scene, depsgraph.view_layer),
+        texture_limit=depsgraph.scene.komorebi.texture_limit << 20,
+    )
+    export_instances(engine, depsgraph, data, Wanted.by(()), unchanged)
+    return data
+
+
 def _follow(
     engine: Any, depsgraph: Any, shutter: Shutter, cameras: list[CameraMotion],
     motion: InstanceMotion,

@@ -1,0 +1,116 @@
+"""One rendered 3D viewport: what the engine calls, all on Blender's own thread."""
+
+from __future__ import annotations
+
+import traceback
+import weakref
+from typing import Any
+
+from .. import core
+from ..errors import RenderError
+from ..export import export_view
+from ..export.settings import export_settings
+from ..passes import Pass
+from ..unchanged import Unchanged
+from .drawing import Drawing
+from .view_camera import view_camera
+from .worker import Picture, SceneRequest, Worker
+
+
+class Viewport:
+    """Lives as long as the engine's instance, which is that of one viewport."""
+
+    def __init__(self, engine: Any) -> None:
+        self._worker = Worker(core.load(), _redrawer(engine))
+        self._drawing = Drawing()
+        self._unchanged = Unchanged()
+        self._exposure = 1.0
+        self._error = ""
+
+    def close(self) -> None:
+        """Ends all work; nothing may be called afterwards."""
+        self._worker.stop()
+
+    def update(self, engine: Any, context: Any, depsgraph: Any) -> None:
+        """Something in the scene has changed."""
+        try:
+            self._error = ""
+            self._export(engine, depsgraph)
+        except RenderError as error:
+            self._error = str(error)
+        except Exception as error:
+            traceback.print_exc()
+            self._error = f"Unexpected {type(error).__name__}: {error}"
+        engine.tag_redraw()
+
+    def _export(self, engine: Any, depsgraph: Any) -> None:
+        scene = depsgraph.scene
+        data = export_view(engine, depsgraph, self._unchanged)
+        passes = [Pass("Combined", "RGBA", "COLOR", "Combined")]
+        settings = export_settings(scene, depsgraph.view_layer, passes, (0, 0, 1, 1))
+        preview = scene.komorebi
+        settings |= {
+            "samples": preview.preview_samples or (1 << 24),
+            "sample_offset": 0,
+            "time_limit": 0.0,
+            "use_progressive": True,
+            "passes": ["Combined"],
+            "pixel_size": _pixel_size(scene),
+        }  # fmt: skip
+        self._exposure = preview.film_exposure if settings["method"] == "WORLD_LIGHT" else 1.0
+        self._worker.show(SceneRequest(data, settings))
+
+    def draw(self, engine: Any, context: Any, depsgraph: Any) -> None:
+        """Blender draws the region: shows what there is, and has the rest rendered."""
+        try:
+            view = view_camera(engine, context, depsgraph)
+        except RenderError as error:
+            engine.update_stats("", f"Komorebi: {error}")
+            return
+        if view is None:
+            return
+        self._worker.look(view)
+        picture = self._worker.picture
+        error = self._error or self._worker.error
+        if picture is not None and not error:
+            self._drawing.draw(engine, depsgraph.scene, picture, self._exposure)
+        engine.update_stats("", f"Komorebi: {error}" if error else self._said(picture))
+
+    def _said(self, picture: Picture | None) -> str:
+        statistics = self._worker.statistics
+        if picture is None:
+            return statistics.stage
+        said = []
+        if picture.sample > 0:
+            said.append(f"Sample {picture.sample}/{picture.samples}")
+        said.append(f"{statistics.triangles / 1e6:.1f} M tris")
+        if statistics.seconds > 0.0:
+            said.append(f"{statistics.rays / statistics.seconds / 1e6:.0f} Mrays/s")
+        said.append(f"{statistics.bytes / 1e6:.0f} MB")
+        return " · ".join(said)
+
+
+def _pixel_size(scene: Any) -> int:
+    """Blender's preview_pixel_size: AUTO is one pixel, two on screens of high density."""
+    import bpy
+
+    size = scene.render.preview_pixel_size
+    if size != "AUTO":
+        return int(size)
+    return 2 if bpy.context.preferences.system.pixel_size > 1.5 else 1
+
+
+def _redrawer(engine: Any) -> Any:
+    """What a worker calls to be seen; it keeps no engine alive."""
+    reference = weakref.ref(engine)
+
+    def redraw() -> None:
+        living = reference()
+        if living is None:
+            return
+        try:
+            living.tag_redraw()
+        except ReferenceError:
+            pass  # Blender has freed its half
+
+    return redraw
