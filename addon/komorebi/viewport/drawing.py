@@ -18,7 +18,7 @@ class Drawing:
     """The texture of the picture that was drawn last."""
 
     def __init__(self) -> None:
-        self._picture: Picture | None = None
+        self.picture: Picture | None = None
         self._texture: Any = None
         self._batch: Any = None
         self._place: Rect | None = None
@@ -27,9 +27,9 @@ class Drawing:
         """Within view_draw."""
         import gpu  # not usable in background mode
 
-        if picture is not self._picture:
+        if picture is not self.picture:
             self._texture = _texture(gpu, picture, exposure)
-            self._picture = picture
+            self.picture = picture
         gpu.state.blend_set("ALPHA_PREMULT")
         engine.bind_display_space_shader(scene)
         self._draw_quad(gpu, picture.view.region)

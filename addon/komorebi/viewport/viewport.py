@@ -14,6 +14,7 @@ from ..passes import Pass
 from ..unchanged import Unchanged
 from .drawing import Drawing
 from .view_camera import view_camera
+from .view_options import shown_in, world_of
 from .worker import Picture, SceneRequest, Worker
 
 
@@ -31,11 +32,25 @@ class Viewport:
         """Ends all work; nothing may be called afterwards."""
         self._worker.stop()
 
+    @property
+    def picture(self) -> Picture | None:
+        """The newest one."""
+        return self._worker.picture
+
+    @property
+    def error(self) -> str:
+        return self._error or self._worker.error
+
+    @property
+    def is_done(self) -> bool:
+        """Whether all of it is rendered and drawn."""
+        return self._worker.is_idle and self._drawing.picture is self._worker.picture
+
     def update(self, engine: Any, context: Any, depsgraph: Any) -> None:
         """Something in the scene has changed."""
         try:
             self._error = ""
-            self._export(engine, depsgraph)
+            self._export(engine, context.space_data, depsgraph)
         except RenderError as error:
             self._error = str(error)
         except Exception as error:
@@ -43,9 +58,9 @@ class Viewport:
             self._error = f"Unexpected {type(error).__name__}: {error}"
         engine.tag_redraw()
 
-    def _export(self, engine: Any, depsgraph: Any) -> None:
+    def _export(self, engine: Any, space: Any, depsgraph: Any) -> None:
         scene = depsgraph.scene
-        data = export_view(engine, depsgraph, self._unchanged)
+        data = export_view(engine, depsgraph, self._unchanged, shown_in(space), world_of(space))
         passes = [Pass("Combined", "RGBA", "COLOR", "Combined")]
         settings = export_settings(scene, depsgraph.view_layer, passes, (0, 0, 1, 1))
         preview = scene.komorebi
@@ -71,7 +86,7 @@ class Viewport:
             return
         self._worker.look(view)
         picture = self._worker.picture
-        error = self._error or self._worker.error
+        error = self.error
         if picture is not None and not error:
             self._drawing.draw(engine, depsgraph.scene, picture, self._exposure)
         engine.update_stats("", f"Komorebi: {error}" if error else self._said(picture))

@@ -76,6 +76,7 @@ class Worker:
         self._parts: Any = None
         self._settings: dict[str, Any] = {}
         self._source = "Combined"
+        self._is_idle = False
         self.picture: Picture | None = None
         self.error = ""
         self.statistics = Statistics()
@@ -97,6 +98,12 @@ class Worker:
                 return
             self._wanted.view, self._wanted.changed = view, True
             self._condition.notify_all()
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether nothing is left to do."""
+        with self._condition:
+            return self._is_idle and not self._wanted.changed
 
     def pause(self, paused: bool) -> None:
         with self._condition:
@@ -122,7 +129,9 @@ class Worker:
         while True:
             with self._condition:
                 while not self._wanted.changed and not self._wanted.stopped:
+                    self._is_idle = True
                     self._condition.wait()
+                self._is_idle = False
                 if self._wanted.stopped:
                     break
                 request, view = self._wanted.scene, self._wanted.view
