@@ -63,8 +63,9 @@ def export_scene(
 
 
 def export_view(
-    engine: Any, depsgraph: Any, unchanged: Unchanged, shown: Shown | None, world: WorldData | None
-) -> SceneData:
+    engine: Any, depsgraph: Any, unchanged: Unchanged, shown: Shown | None,
+    world: WorldData | None, sources: Collection[str],
+) -> SceneData:  # fmt: skip
     """What a viewport's depsgraph shows, without a camera: the view has one of its own. `world` in
     place of the scene's."""
     unchanged.begin(depsgraph)
@@ -73,7 +74,7 @@ def export_view(
         world=world or export_sky(engine, depsgraph.scene, depsgraph.view_layer),
         texture_limit=depsgraph.scene.komorebi.texture_limit << 20,
     )
-    export_instances(engine, depsgraph, data, Wanted.by(()), unchanged, shown=shown)
+    export_instances(engine, depsgraph, data, Wanted.by(sources), unchanged, shown=shown)
     return data
 
 

@@ -11,11 +11,20 @@ from ..errors import RenderError
 from ..export import export_view
 from ..export.settings import export_settings
 from ..passes import Pass
+from ..result import EXPOSED
 from ..unchanged import Unchanged
 from .drawing import Drawing
 from .view_camera import view_camera
 from .view_options import shown_in, world_of
 from .worker import Picture, SceneRequest, Worker
+
+# Of a viewport's Render Pass the core's name.
+PASSES = {
+    "COMBINED": "Combined", "EMISSION": "Emission", "ENVIRONMENT": "Environment",
+    "AO": "Ambient Occlusion", "SKY_VISIBILITY": "Sky Visibility",
+    "DIFFUSE_COLOR": "Diffuse Color", "NORMAL": "Normal", "BENT_NORMAL": "Bent Normal",
+    "POSITION": "Position", "UV": "UV", "DEPTH": "Depth", "MIST": "Mist",
+}  # fmt: skip
 
 
 class Viewport:
@@ -27,6 +36,7 @@ class Viewport:
         self._unchanged = Unchanged()
         self._exposure = 1.0
         self._error = ""
+        self._render_pass = ""
 
     def close(self) -> None:
         """Ends all work; nothing may be called afterwards."""
@@ -60,8 +70,11 @@ class Viewport:
 
     def _export(self, engine: Any, space: Any, depsgraph: Any) -> None:
         scene = depsgraph.scene
-        data = export_view(engine, depsgraph, self._unchanged, shown_in(space), world_of(space))
-        passes = [Pass("Combined", "RGBA", "COLOR", "Combined")]
+        source = PASSES[space.shading.komorebi.render_pass]
+        data = export_view(
+            engine, depsgraph, self._unchanged, shown_in(space), world_of(space), (source,)
+        )
+        passes = [Pass(source, "RGBA", "COLOR", source)]
         settings = export_settings(scene, depsgraph.view_layer, passes, (0, 0, 1, 1))
         preview = scene.komorebi
         settings |= {
@@ -69,11 +82,13 @@ class Viewport:
             "sample_offset": 0,
             "time_limit": 0.0,
             "use_progressive": True,
-            "passes": ["Combined"],
+            "passes": [source],
             "pixel_size": _pixel_size(scene),
         }  # fmt: skip
-        self._exposure = preview.film_exposure if settings["method"] == "WORLD_LIGHT" else 1.0
-        self._worker.show(SceneRequest(data, settings))
+        exposed = source in EXPOSED and settings["method"] == "WORLD_LIGHT"
+        self._exposure = preview.film_exposure if exposed else 1.0
+        self._render_pass = space.shading.komorebi.render_pass
+        self._worker.show(SceneRequest(data, settings, source))
 
     def draw(self, engine: Any, context: Any, depsgraph: Any) -> None:
         """Blender draws the region: shows what there is, and has the rest rendered."""
@@ -84,6 +99,9 @@ class Viewport:
             return
         if view is None:
             return
+        if context.space_data.shading.komorebi.render_pass != self._render_pass:
+            self.update(engine, context, depsgraph)  # Blender tells nobody
+        self._worker.pause(context.scene.komorebi.preview_pause)
         self._worker.look(view)
         picture = self._worker.picture
         error = self.error

@@ -26,7 +26,7 @@ class SceneRequest:
 
     data: SceneData
     settings: dict[str, Any]  # the core's
-    passes: tuple[str, str] = ("Combined", "Combined")  # the core's pass and what it is called
+    source: str  # the core's pass that is shown
 
 
 @dataclass(slots=True)
@@ -166,7 +166,7 @@ class Worker:
         parts = native_scene.load(self._core, request.data, 0.0, threads, cancel)
         scene = native_scene.build(self._core, request.data, parts, None, threads, cancel)
         self._parts, self._scene, self._settings = parts, scene, request.settings
-        self._source = request.passes[0]
+        self._source = request.source
         self.statistics = Statistics(
             scene.triangle_count, scene.byte_count,
             warnings=[*parts.warnings, *(s for mesh in parts.meshes for s in mesh.warnings)],
@@ -208,12 +208,18 @@ class Worker:
                         self._publish(view, session, coarse.region, pixel, progress, is_final)
                 if over:
                     return True
-                self._wait_while_paused()
+                if self._wanted.paused:
+                    self._stand_still(session)
         finally:
             session.cancel()
 
-    def _wait_while_paused(self) -> None:
-        pass  # sessions cannot stand still yet; see viewport.py
+    def _stand_still(self, session: Any) -> None:
+        """Until the pause ends or something else is wanted."""
+        session.cancel()
+        session.wait(1.0)
+        with self._condition:
+            self._condition.wait_for(lambda: self._wanted.changed or not self._wanted.paused)
+        session.resume()
 
     def _publish(
         self, view: ViewCamera, session: Any, region: Rect, pixel: int, progress: Any,
