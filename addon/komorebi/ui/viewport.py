@@ -60,6 +60,7 @@ class KOMOREBI_VIEW3D_PT_shading_lighting(_ShadingPanel):
         column = self.layout.column()
         column.prop(shading, "studiolight_rotate_z", text="Rotation")
         column.prop(shading, "studiolight_intensity")
+        column.prop(shading, "studiolight_background_alpha")
 
 
 class KOMOREBI_VIEW3D_PT_shading_render_pass(_ShadingPanel):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import bpy
+
 from ..export.instance import Shown
 from ..export.mapping import euler_matrix
 from ..export.walk import Subject
@@ -28,11 +30,23 @@ def shown_in(space: Any) -> Shown | None:
     return shown
 
 
+def background_of(space: Any) -> float | None:
+    """How opaque the studio light is behind the scene; None: the film decides."""
+    shading = space.shading
+    if shading.use_scene_world_render or shading.studiolight_background_alpha == 1.0:
+        return None
+    return float(shading.studiolight_background_alpha)
+
+
 def world_of(space: Any) -> WorldData | None:
     """The studio light that takes the scene's world's place; None: the scene's own."""
     shading = space.shading
-    light = shading.selected_studio_light
-    if shading.use_scene_world_render or light is None or light.type != "WORLD":
+    if shading.use_scene_world_render:
+        return None
+    # By name: what Blender calls the selected one may be that of Solid shading.
+    lights = bpy.context.preferences.studio_lights
+    light = next((x for x in lights if x.type == "WORLD" and x.name == shading.studio_light), None)
+    if light is None:
         return None
     turn = euler_matrix((0.0, 0.0, shading.studiolight_rotate_z))
     image = EnvironmentImage(light.name, path=light.path)

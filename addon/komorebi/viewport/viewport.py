@@ -15,7 +15,7 @@ from ..result import EXPOSED
 from ..unchanged import Unchanged
 from .drawing import Drawing
 from .view_camera import view_camera
-from .view_options import shown_in, world_of
+from .view_options import background_of, shown_in, world_of
 from .worker import Picture, SceneRequest, Worker
 
 # Of a viewport's Render Pass the core's name.
@@ -88,7 +88,10 @@ class Viewport:
         exposed = source in EXPOSED and settings["method"] == "WORLD_LIGHT"
         self._exposure = preview.film_exposure if exposed else 1.0
         self._render_pass = space.shading.komorebi.render_pass
-        self._worker.show(SceneRequest(data, settings, source))
+        background = background_of(space) if source == "Combined" else None
+        if background is not None:
+            settings |= {"film_transparent": True, "passes": ["Combined", "Environment"]}
+        self._worker.show(SceneRequest(data, settings, source, background))
 
     def draw(self, engine: Any, context: Any, depsgraph: Any) -> None:
         """Blender draws the region: shows what there is, and has the rest rendered."""

@@ -11,6 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from .. import native_scene
 from ..scene_data import FloatArray, SceneData
 from .view_camera import Rect, ViewCamera, coarse_view
@@ -27,6 +29,7 @@ class SceneRequest:
     data: SceneData
     settings: dict[str, Any]  # the core's
     source: str  # the core's pass that is shown
+    background: float | None = None  # how opaque the world is; None: as the film says
 
 
 @dataclass(slots=True)
@@ -76,6 +79,7 @@ class Worker:
         self._parts: Any = None
         self._settings: dict[str, Any] = {}
         self._source = "Combined"
+        self._background: float | None = None
         self._is_idle = False
         self.picture: Picture | None = None
         self.error = ""
@@ -166,7 +170,7 @@ class Worker:
         parts = native_scene.load(self._core, request.data, 0.0, threads, cancel)
         scene = native_scene.build(self._core, request.data, parts, None, threads, cancel)
         self._parts, self._scene, self._settings = parts, scene, request.settings
-        self._source = request.source
+        self._source, self._background = request.source, request.background
         self.statistics = Statistics(
             scene.triangle_count, scene.byte_count,
             warnings=[*parts.warnings, *(s for mesh in parts.meshes for s in mesh.warnings)],
@@ -226,6 +230,9 @@ class Worker:
         is_final: bool,
     ) -> None:  # fmt: skip
         pixels = session.read(self._source)
+        if self._background is not None:
+            pixels[:, :, :3] += np.float32(self._background) * session.read("Environment")
+            pixels[:, :, 3] += np.float32(self._background) * (1.0 - pixels[:, :, 3])
         statistics = self.statistics
         statistics.rays, statistics.seconds = progress["rays"], progress["elapsed"]
         self.picture = Picture(
