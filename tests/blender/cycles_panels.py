@@ -155,7 +155,10 @@ INSIDE = (
     ("OUTLINER_MT_collection_view_layer", "Set and Clear Indirect Only", "draw_indirect_only"),
     ("RENDER_PT_context", "Cycles' device", "draw_method"),
     ("the node editor's Add menu and search, in 3.4", "shaders", "node_menu.py"),
-    ("VIEW3D_PT_shading_lighting", "lights of the rendered view",
-     "KOMOREBI_VIEW3D_PT_shading_lighting"),
+    (
+        "VIEW3D_PT_shading_lighting",
+        "lights of the rendered view",
+        "KOMOREBI_VIEW3D_PT_shading_lighting",
+    ),
     ("DATA_PT_volume_render", "Cycles' space of steps", "left out: " + VOLUMES),
 )

@@ -60,7 +60,7 @@ def viewports():
 
     from komorebi.viewport.viewport import Viewport
 
-    return [o for o in gc.get_objects() if isinstance(o, Viewport)]
+    return [o for o in gc.get_objects() if type(o) is Viewport]  # what is dead has no class to ask
 
 
 def finished(limit=60.0):
@@ -72,7 +72,8 @@ def finished(limit=60.0):
         if alive and all(v.is_done for v in alive):
             yield 0.2
             return
-    raise AssertionError(f"not finished: {[(v.picture, v.error) for v in viewports()]}")
+    states = [(v.picture, v.error) for v in viewports()]
+    raise AssertionError(f"not finished: {states}, {space().shading.type}, {bpy.context.engine}")
 
 
 def screen(folder, name):

@@ -93,16 +93,12 @@ def view_camera(engine: Any, context: Any, depsgraph: Any) -> ViewCamera | None:
                 near, far = shape.clip_start, shape.clip_end
                 size = (frame[2] - frame[0], frame[3] - frame[1])
                 aspect = (1.0, 1.0)  # the frame on the screen has it already
-                numbers = panorama_numbers(
-                    camera, *size, aspect, (shape.shift_x, shape.shift_y)
-                )
+                numbers = panorama_numbers(camera, *size, aspect, (shape.shift_x, shape.shift_y))
                 panorama = tuple(numbers.items())
     shown = _common(_common(film, border), whole)
     if shown is None:
         return None
-    return ViewCamera(
-        kind, tuple(matrix.ravel().tolist()), near, far, film, shown, lens, panorama
-    )
+    return ViewCamera(kind, tuple(matrix.ravel().tolist()), near, far, film, shown, lens, panorama)
 
 
 def _clip(window: DoubleArray, is_perspective: bool) -> tuple[float, float]:

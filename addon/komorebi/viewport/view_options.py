@@ -50,6 +50,4 @@ def world_of(space: Any) -> WorldData | None:
         return None
     turn = euler_matrix((0.0, 0.0, shading.studiolight_rotate_z))
     image = EnvironmentImage(light.name, path=light.path)
-    return WorldData(
-        image=image, strength=shading.studiolight_intensity, texture_from_world=turn
-    )
+    return WorldData(image=image, strength=shading.studiolight_intensity, texture_from_world=turn)

@@ -15,6 +15,7 @@ import numpy as np
 
 from .. import native_scene
 from ..scene_data import FloatArray, SceneData
+from . import keys
 from .view_camera import Rect, ViewCamera, coarse_view
 
 POLL_SECONDS = 0.01
@@ -152,6 +153,7 @@ class Worker:
             except Exception as error:
                 self._fail(error)
         self._scene = self._parts = None
+        keys.close(id(self))
 
     def _take_back(self, request: SceneRequest) -> None:
         """What was not built comes again, unless there is a newer one."""
@@ -167,8 +169,10 @@ class Worker:
     def _build(self, request: SceneRequest, cancel: Any) -> None:
         self.error, self.statistics = "", Statistics(stage="Building the scene")
         threads = request.settings["threads"]
+        shown = {mesh.key.geometry for mesh in request.data.meshes if mesh.key is not None}
         parts = native_scene.load(self._core, request.data, 0.0, threads, cancel)
         scene = native_scene.build(self._core, request.data, parts, None, threads, cancel)
+        keys.show(id(self), shown)
         self._parts, self._scene, self._settings = parts, scene, request.settings
         self._source, self._background = request.source, request.background
         self.statistics = Statistics(
