@@ -395,11 +395,3 @@ def light_links(obj: Any) -> list[str]:
     links = getattr(obj, "light_linking", None)
     found = (("receiver_collection", "light linking"), ("blocker_collection", "shadow linking"))
     return [what for name, what in found if getattr(links, name, None) is not None]
-
-
-def image_shader(gpu: Any) -> Any:
-    """Blender's shader that draws a texture; its name once told the dimensions."""
-    try:
-        return gpu.shader.from_builtin("IMAGE")
-    except ValueError:
-        return gpu.shader.from_builtin("2D_IMAGE")

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from .. import compat
 from ..scene_data import FloatArray
 from .view_camera import Rect
 from .worker import Picture
@@ -40,7 +39,7 @@ class Drawing:
         from gpu_extras.batch import batch_for_shader
 
         x, y, x_end, y_end = place
-        shader = compat.image_shader(gpu)
+        shader = _image_shader(gpu)
         if self._batch is None or place != self._place:
             self._place = place
             self._batch = batch_for_shader(
@@ -53,6 +52,14 @@ class Drawing:
         shader.bind()
         shader.uniform_sampler("image", self._texture)
         self._batch.draw(shader)
+
+
+def _image_shader(gpu: Any) -> Any:
+    """Blender's shader that draws a texture; its name once told the dimensions."""
+    try:
+        return gpu.shader.from_builtin("IMAGE")
+    except ValueError:
+        return gpu.shader.from_builtin("2D_IMAGE")
 
 
 def _texture(gpu: Any, picture: Picture, exposure: float) -> Any:

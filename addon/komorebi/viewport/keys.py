@@ -1,5 +1,5 @@
-"""Which meshes the live viewports show: what none of them does any more leaves the cache, or sculpting
-would fill it with every stroke. No bpy in here.
+"""Which meshes the live viewports show. What none of them does any more leaves the cache, which
+sculpting would fill with every stroke. No bpy in here.
 """
 
 from __future__ import annotations

@@ -77,7 +77,7 @@ def view_camera(engine: Any, context: Any, depsgraph: Any) -> ViewCamera | None:
     matrix = np.array(view.window_matrix, np.float64) @ np.array(view.view_matrix, np.float64)
     kind = "PERSPECTIVE" if view.is_perspective else "ORTHOGRAPHIC"
     near, far = _clip(np.array(view.window_matrix, np.float64), view.is_perspective)
-    border = _border(context.scene, space, view, whole)
+    border = _border(space, view, whole)
     if view.view_perspective == "CAMERA" and space.camera is not None:
         camera = space.camera.evaluated_get(depsgraph)
         if camera.type == "CAMERA":
@@ -110,7 +110,7 @@ def _clip(window: DoubleArray, is_perspective: bool) -> tuple[float, float]:
     return 1.0, 1.0 + float(-2.0 / a)
 
 
-def _border(scene: Any, space: Any, view: Any, whole: Rect) -> Rect:
+def _border(space: Any, view: Any, whole: Rect) -> Rect:
     """The viewport's own render region (Ctrl B outside of the camera view)."""
     if view.view_perspective == "CAMERA" or not space.use_render_border:
         return whole

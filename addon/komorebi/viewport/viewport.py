@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import traceback
 import weakref
 from typing import Any
@@ -144,9 +145,7 @@ def _redrawer(engine: Any) -> Any:
         living = reference()
         if living is None:
             return
-        try:
+        with contextlib.suppress(ReferenceError):  # Blender has freed its half
             living.tag_redraw()
-        except ReferenceError:
-            pass  # Blender has freed its half
 
     return redraw

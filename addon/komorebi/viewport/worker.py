@@ -1,7 +1,7 @@
 """Renders what a viewport shows, on a thread of its own: the newest scene by the newest camera.
 
-Nothing in here touches bpy. What comes anew ends what is on: a build by its Cancel, a picture by its
-session's. A picture starts coarse and becomes finer, so that there is always something to see.
+Nothing in here touches bpy. What comes anew ends what is on: a build by its Cancel, a picture by
+its session's. A picture starts coarse and becomes finer, so that there is always something to see.
 """
 
 from __future__ import annotations
