@@ -27,7 +27,7 @@ class KOMOREBI_RENDER_PT_performance_viewport(KomorebiPanel, bpy.types.Panel):
         self.column().prop(context.scene.render, "preview_pixel_size", text="Pixel Size")
 
 
-class _ShadingPanel(bpy.types.Panel):
+class ShadingPanel:
     """Part of the popover beside a viewport's shading modes."""
 
     bl_space_type = "VIEW_3D"
@@ -36,13 +36,15 @@ class _ShadingPanel(bpy.types.Panel):
     bl_parent_id = "VIEW3D_PT_shading"
     COMPAT_ENGINES = {ENGINE_ID}
 
+    layout: Any
+
     @classmethod
     def poll(cls, context: Any) -> bool:
         shading = context.space_data.shading
         return context.engine in cls.COMPAT_ENGINES and shading.type == "RENDERED"
 
 
-class KOMOREBI_VIEW3D_PT_shading_lighting(_ShadingPanel):
+class KOMOREBI_VIEW3D_PT_shading_lighting(ShadingPanel, bpy.types.Panel):
     bl_label = "Lighting"
 
     def draw(self, context: Any) -> None:
@@ -63,7 +65,7 @@ class KOMOREBI_VIEW3D_PT_shading_lighting(_ShadingPanel):
         column.prop(shading, "studiolight_background_alpha")
 
 
-class KOMOREBI_VIEW3D_PT_shading_render_pass(_ShadingPanel):
+class KOMOREBI_VIEW3D_PT_shading_render_pass(ShadingPanel, bpy.types.Panel):
     bl_label = "Render Pass"
 
     def draw(self, context: Any) -> None:
