@@ -67,9 +67,10 @@ def load(core: Any, data: SceneData, expected_rays: float, threads: int, cancel:
 
 
 def build(
-    core: Any, data: SceneData, parts: Parts, camera: CameraData, threads: int, cancel: Any
+    core: Any, data: SceneData, parts: Parts, camera: CameraData | None, threads: int, cancel: Any
 ) -> Any:
-    """A committed core.Scene, seen by `camera`; only the tree over instances is built here."""
+    """A committed core.Scene, seen by `camera` (None: whoever renders it says by which); only the
+    tree over instances is built here."""
     scene = core.Scene()
     indices = [scene.add_mesh(mesh) for mesh in parts.meshes]
     for group in data.instances:
@@ -98,6 +99,13 @@ def build(
             name=lamp.name, casts_shadow=lamp.casts_shadow, lights_catchers=lamp.lights_catchers,
             spot_scales_by_cosine=lamp.spot_scales_by_cosine, **lamp.sizes,
         )  # fmt: skip
+    if camera is not None:
+        _set_camera(scene, camera)
+    scene.commit(threads=threads, cancel=cancel, keep_inputs=dump.is_wanted())
+    return scene
+
+
+def _set_camera(scene: Any, camera: CameraData) -> None:
     try:
         scene.set_camera(
             camera.kind, camera.matrix, camera.clip_start, camera.clip_end,
@@ -107,8 +115,6 @@ def build(
         )  # fmt: skip
     except ValueError as error:
         raise ValueError(str(error).replace("camera:", f'camera "{camera.name}":', 1)) from error
-    scene.commit(threads=threads, cancel=cancel, keep_inputs=dump.is_wanted())
-    return scene
 
 
 def tables(data: SceneData) -> dict[str, Any]:

@@ -37,6 +37,20 @@ AO_SAMPLINGS = (
     ("COSINE", "Cosine", "Rays by the cosine of their angle to the normal: the least noise"),
     ("UNIFORM", "Uniform", "Rays evenly over the hemisphere: same result, more noise"),
 )
+VIEW_PASSES = (
+    ("COMBINED", "Combined", "The picture"),
+    ("EMISSION", "Emission", "What shines"),
+    ("ENVIRONMENT", "Environment", "The world behind everything"),
+    ("AO", "Ambient Occlusion", "How much of a white sky each point sees, within the distance"),
+    ("SKY_VISIBILITY", "Sky Visibility", "The same at any distance"),
+    ("DIFFUSE_COLOR", "Diffuse Color", "The colour of surfaces"),
+    ("NORMAL", "Normal", "Where surfaces face"),
+    ("BENT_NORMAL", "Bent Normal", "Where most light of a white sky comes from"),
+    ("POSITION", "Position", "Where surfaces are"),
+    ("UV", "UV", "The active UV map"),
+    ("DEPTH", "Depth", "How far away surfaces are"),
+    ("MIST", "Mist", "How far away surfaces are, by the world's mist"),
+)
 ENVIRONMENT_SAMPLINGS = (
     ("MIS", "Multiple Importance", "The next two together, each where it is good at it"),
     ("COSINE", "Cosine", "Rays by the surface's cosine: good for even skies"),
@@ -54,6 +68,15 @@ PIXEL_FILTERS = (
 )
 
 
+class KomorebiViewSettings(bpy.types.PropertyGroup):
+    """Settings of Komorebi in one 3D viewport"""
+
+    render_pass: EnumProperty(
+        name="Render Pass", description="What the rendered viewport shows", items=VIEW_PASSES,
+        default="COMBINED",
+    )  # fmt: skip
+
+
 class KomorebiSceneSettings(bpy.types.PropertyGroup):
     """Settings of the Komorebi render engine"""
 
@@ -65,6 +88,14 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         description="Camera samples a pixel; with a noise threshold the most that one may take",
         default=32, min=1, max=1 << 24,
     )  # fmt: skip
+    preview_samples: IntProperty(
+        name="Viewport Samples",
+        description="Camera samples a pixel in the viewport; 0 goes on for ever",
+        default=64, min=0, max=1 << 24,
+    )  # fmt: skip
+    preview_pause: BoolProperty(
+        name="Pause Preview", description="The rendered viewport stands still", default=False
+    )
     # Off, though Cycles has it on: at these few samples it is no sooner at the same error (ambient
     # occlusion, 192 × 108: 0.0047 in 0.78 s both ways; 8 % sooner at 0.0028), and parts of a
     # picture that are to be put together need every sample. The threshold is automatic, for
@@ -284,6 +315,7 @@ def register() -> None:
     bpy.utils.register_class(KomorebiSceneSettings)
     bpy.utils.register_class(KomorebiMaterialSettings)
     bpy.utils.register_class(KomorebiViewLayerSettings)
+    bpy.utils.register_class(KomorebiViewSettings)
     bpy.types.Scene.komorebi = PointerProperty(name="Komorebi Settings", type=KomorebiSceneSettings)
     bpy.types.Material.komorebi = PointerProperty(
         name="Komorebi Material Settings", type=KomorebiMaterialSettings
@@ -291,12 +323,17 @@ def register() -> None:
     bpy.types.ViewLayer.komorebi = PointerProperty(
         name="Komorebi View Layer Settings", type=KomorebiViewLayerSettings
     )
+    bpy.types.View3DShading.komorebi = PointerProperty(
+        name="Komorebi View Settings", type=KomorebiViewSettings
+    )
 
 
 def unregister() -> None:
+    del bpy.types.View3DShading.komorebi
     del bpy.types.ViewLayer.komorebi
     del bpy.types.Material.komorebi
     del bpy.types.Scene.komorebi
+    bpy.utils.unregister_class(KomorebiViewSettings)
     bpy.utils.unregister_class(KomorebiViewLayerSettings)
     bpy.utils.unregister_class(KomorebiMaterialSettings)
     bpy.utils.unregister_class(KomorebiSceneSettings)

@@ -118,16 +118,27 @@ void add_instances(Scene& scene, std::uint32_t mesh, const py::array& matrices,
   }
 }
 
+std::shared_ptr<CameraDesc> make_camera_desc(const std::string& kind, const py::object& matrix,
+                                             double clip_start, double clip_end,
+                                             std::uint32_t width, std::uint32_t height,
+                                             const py::object& lens, const py::object& panorama,
+                                             const py::object& stereo, const py::object& shutter,
+                                             const py::object& motion) {
+  auto camera = std::make_shared<CameraDesc>(
+      camera_input(kind, matrix, lens, panorama, stereo, shutter, motion));
+  camera->clip_start = clip_start;
+  camera->clip_end = clip_end;
+  camera->width = width;
+  camera->height = height;
+  return camera;
+}
+
 void set_camera(Scene& scene, const std::string& kind, const py::object& matrix, double clip_start,
                 double clip_end, std::uint32_t width, std::uint32_t height, const py::object& lens,
                 const py::object& panorama, const py::object& stereo, const py::object& shutter,
                 const py::object& motion) {
-  CameraDesc camera = camera_input(kind, matrix, lens, panorama, stereo, shutter, motion);
-  camera.clip_start = clip_start;
-  camera.clip_end = clip_end;
-  camera.width = width;
-  camera.height = height;
-  scene.set_camera(camera);
+  scene.set_camera(*make_camera_desc(kind, matrix, clip_start, clip_end, width, height, lens,
+                                     panorama, stereo, shutter, motion));
 }
 
 void set_world_environment(Scene& scene, std::shared_ptr<const Environment> environment,
@@ -291,6 +302,13 @@ void bind_scene(py::module_& module) {
       },
       py::arg("triangles"), py::arg("expected_rays"),
       "The builder, LINEAR or SAH, with which build and rays together take the least time.");
+  py::class_<CameraDesc, std::shared_ptr<CameraDesc>>(
+      module, "Camera", "A camera that a Session takes in place of its scene's.")
+      .def(py::init(&make_camera_desc), py::arg("kind"), py::arg("matrix"), py::arg("clip_start"),
+           py::arg("clip_end"), py::arg("width"), py::arg("height"), py::kw_only(),
+           py::arg("lens") = py::none(), py::arg("panorama") = py::none(),
+           py::arg("stereo") = py::none(), py::arg("shutter") = py::none(),
+           py::arg("motion") = py::none(), "As Scene.set_camera.");
   module.def("content_tags", &tags_of, py::arg("array"), py::arg("threads") = 0,
              "32 bytes for each 4096 of the array's, to be hashed on: two different blocks share "
              "them with probability 2^-128. Of use within this process alone.");

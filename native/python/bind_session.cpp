@@ -60,7 +60,8 @@ std::shared_ptr<Settings> make_settings(
     const std::string& environment_sampling, const std::string& pixel_filter, float filter_width,
     bool use_progressive, bool film_transparent, float mist_start, float mist_depth,
     const std::string& mist_falloff, std::uint32_t threads, std::uint32_t tile_size,
-    const std::optional<Region>& region, const std::vector<std::string>& passes) {
+    const std::optional<Region>& region, const std::vector<std::string>& passes,
+    bool guides_light) {
   auto s = std::make_shared<Settings>();
   s->method = parse("method", method, kMethods);
   s->samples = samples;
@@ -97,6 +98,7 @@ std::shared_ptr<Settings> make_settings(
   s->has_region = region.has_value();
   if (region) s->region = {(*region)[0], (*region)[1], (*region)[2], (*region)[3]};
   s->passes = passes;
+  s->guides_light = guides_light;
   return s;
 }
 
@@ -189,8 +191,10 @@ void bind_settings(py::module_& module) {
            py::arg("mist_depth") = d.mist_depth, py::arg("mist_falloff") = "QUADRATIC",
            py::arg("threads") = d.threads, py::arg("tile_size") = d.tile_size,
            py::arg("region") = std::optional<Region>(), py::arg("passes") = d.passes,
+           py::arg("guides_light") = d.guides_light,
            "region: (x_min, y_min, x_max, y_max) in full-frame pixels, half open, row 0 at the "
-           "bottom; None is the whole frame. threads 0: one a core. ValueError for a name that is "
+           "bottom; None is the whole frame. threads 0: one a core. guides_light: whether the "
+           "parts of the sky that surfaces see are measured first. ValueError for a name that is "
            "not known; ranges are checked when a Session starts.");
 }
 
@@ -203,12 +207,15 @@ void bind_session(py::module_& module) {
   bind_settings(module);
   py::class_<Session, std::shared_ptr<Session>>(
       module, "Session", "Renders a committed scene on threads of its own; it starts at once.")
-      .def(py::init([](std::shared_ptr<Scene> scene, const Settings& settings) {
+      .def(py::init([](std::shared_ptr<Scene> scene, const Settings& settings,
+                       const std::shared_ptr<CameraDesc>& camera) {
              const py::gil_scoped_release release;
-             return new Session(std::move(scene), settings);
+             return new Session(std::move(scene), settings,
+                                camera ? std::optional(*camera) : std::nullopt);
            }),
-           py::arg("scene"), py::arg("settings"),
-           "ValueError: the scene is not committed or has no camera, a setting is out of range.")
+           py::arg("scene"), py::arg("settings"), py::arg("camera") = py::none(),
+           "camera: a Camera in place of the scene's own. ValueError: the scene is not committed "
+           "or has no camera, a setting is out of range.")
       .def("wait", &Session::wait, py::arg("timeout"), py::call_guard<py::gil_scoped_release>(),
            "True when the render is over (done, cancelled or failed) within `timeout` seconds.")
       .def("cancel", &Session::cancel, "Ends the render within 100 ms; what is done stays.")

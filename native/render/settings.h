@@ -59,6 +59,9 @@ struct Settings {
   float fast_gi_distance = 10.0f;     ///< metres
   float fast_gi_factor = 1.0f;        ///< of ambient light; 0: none of it
   EnvironmentSampling environment_sampling = EnvironmentSampling::kProduct;
+  /// Whether parts of the sky that surfaces see get the light rays, which is measured before the
+  /// first sample (SkyGuide). It is for pictures that are soon thrown away that it does not pay.
+  bool guides_light = true;
   PixelFilter pixel_filter = PixelFilter::kBlackmanHarris;
   float filter_width = 1.5f;    ///< pixels
   bool use_progressive = true;  ///< refine the whole frame, not one tile to its end

@@ -8,12 +8,12 @@ from typing import Any
 
 from ..errors import RenderCancelled
 from ..passes import value_columns
-from ..scene_data import SceneData
+from ..scene_data import SceneData, WorldData
 from ..unchanged import Unchanged
 from .aovs import AovReader
 from .camera_motion import CameraMotion
 from .deform import DeformingShapes
-from .instance import export_instances
+from .instance import Shown, export_instances
 from .motion import InstanceMotion
 from .shutter import Shutter, export_shutter
 from .sky_choice import export_sky
@@ -59,6 +59,22 @@ def export_scene(
             deforming.finish(data.meshes)
             for camera in cameras:
                 camera.finish()
+    return data
+
+
+def export_view(
+    engine: Any, depsgraph: Any, unchanged: Unchanged, shown: Shown | None,
+    world: WorldData | None, sources: Collection[str],
+) -> SceneData:  # fmt: skip
+    """What a viewport's depsgraph shows, without a camera: the view has one of its own. `world` in
+    place of the scene's."""
+    unchanged.begin(depsgraph)
+    data = SceneData(
+        cameras={},
+        world=world or export_sky(engine, depsgraph.scene, depsgraph.view_layer),
+        texture_limit=depsgraph.scene.komorebi.texture_limit << 20,
+    )
+    export_instances(engine, depsgraph, data, Wanted.by(sources), unchanged, shown=shown)
     return data
 
 
