@@ -83,8 +83,7 @@ void MaterialFilter::accepts(const void* user, const HitQuery* queries, std::uin
   thread_local PendingHits pending;
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto& [hit, ray] = queries[i];
-    const std::uint32_t lot =
-        hash_combine(hash_combine(ray.path_key, hit.instance), hit.primitive);
+    const std::uint32_t lot = hash_combine(hash_combine(ray.path_key, hit.instance), hit.primitive);
     if (self.map_) {
       const float drawn = to_unit_float(lot);
       const OpacityMap::Cell cell = self.map_->at(context.scene.instances[hit.instance], hit);

@@ -11,7 +11,7 @@
 namespace komorebi {
 namespace {
 
-constexpr std::uint32_t kMostLists = 4;             // of a mesh that have a map
+constexpr std::uint32_t kMostLists = 4;          // of a mesh that have a map
 constexpr std::size_t kMostPatterns = 1u << 17;  // triangles that are told apart
 constexpr std::size_t kMostCells = 1u << 21;     // of all; four are a byte
 constexpr std::uint32_t kLongestSide = 128;
@@ -237,8 +237,8 @@ class OpacityMapBuilder {
     for (std::uint32_t j = square.j; j < square.j + square.size; ++j) {
       for (std::uint32_t i = square.i; i < square.i + square.size && i + j < map_.side_; ++i) {
         const std::size_t at = pattern * map_.cells_ + map_.place(i, j);
-        map_.bits_[at / 4] |= static_cast<std::uint8_t>(static_cast<unsigned>(found)
-                                                        << (2 * (at % 4)));
+        map_.bits_[at / 4] |=
+            static_cast<std::uint8_t>(static_cast<unsigned>(found) << (2 * (at % 4)));
       }
     }
   }

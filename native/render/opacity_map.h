@@ -14,8 +14,8 @@ namespace komorebi {
 
 /// Where on triangles a material is solid, and where it is clear, to all rays: most hits on leaves
 /// that are cut out of cards are decided by looking there, without a program. A triangle's
-/// barycentric square is cut into cells, of which half lie in the triangle, and the programs are run
-/// on intervals over each (shader/program_bounds.h). Where they depend on more than pictures at
+/// barycentric square is cut into cells, of which half lie in the triangle, and the programs are
+/// run on intervals over each (shader/program_bounds.h). Where they depend on more than pictures at
 /// attributes of the mesh, or a cell holds the edge of a leaf, the map does not know.
 ///
 /// Triangles of which the attributes are the same share their cells, so that a tree of a hundred

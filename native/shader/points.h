@@ -69,8 +69,8 @@ inline constexpr PointInputInfo kPointInputInfo[kPointInputs] = {
     {"object_z", 3},
 };
 
-/// Whether an attribute's name asks for how much the rest of it changes by a step in the surface: to
-/// the next pixel, or to the end of a ray's cone.
+/// Whether an attribute's name asks for how much the rest of it changes by a step in the surface:
+/// to the next pixel, or to the end of a ray's cone.
 inline bool asks_for_step(std::string_view attribute) {
   for (const std::string_view step : {"dx:", "dy:", "cone_x:", "cone_y:"}) {
     if (attribute.starts_with(step)) return true;

@@ -35,7 +35,8 @@ class ProgramBounds {
   /// @param attributes  [attributes()][4]
   /// @param values      what it works with; grows once
   /// @param out         [output_count()]
-  void run(const FloatRange (*attributes)[4], std::vector<FloatRange>& values, FloatRange* out) const;
+  void run(const FloatRange (*attributes)[4], std::vector<FloatRange>& values,
+           FloatRange* out) const;
 
  private:
   struct Source {

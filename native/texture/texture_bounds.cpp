@@ -108,7 +108,9 @@ TextureBounds::Ranges TextureBounds::covered(const TextureSampling& how, const F
     default: {
       const std::int32_t first = extended(how.extension, range.first, count);
       const std::int32_t last = extended(how.extension, range.last, count);
-      const auto period = [&](std::int32_t x) { return x >= 0 ? x / count : -((-x - 1) / count) - 1; };
+      const auto period = [&](std::int32_t x) {
+        return x >= 0 ? x / count : -((-x - 1) / count) - 1;
+      };
       if (period(range.first) != period(range.last)) {
         add(0, count - 1);
       } else {
