@@ -41,6 +41,9 @@ struct RenderContext {
   /// others, and the map's mean_flux with its strength. Else 0.
   std::uint32_t surface_mask = 0;
   float sky_flux = 0.0f;
+  /// Whether scattered rays see what light rays see, so that both can bring the sky's light
+  /// (scatter.h).
+  bool shares_light = false;
   /// Whether rays may leave above coarse smooth surfaces, and then go below their own triangle, or
   /// cosines be cut (core/terminator.h). Points have a terminator where any of their rays heeds it.
   bool has_terminators = false, lifts_rays = false, bends_round = false, cuts_cosines = false;
