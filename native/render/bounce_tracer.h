@@ -25,9 +25,10 @@ class BounceTracer {
   /// Lets a path go on from a surface in view, shaded; `path` is the caller's word for it.
   void begin(const SurfaceBatch& surfaces, std::uint32_t surface, std::uint32_t path,
              std::uint32_t pixel_seed, std::uint32_t sample);
+  using Visit = FunctionRef<void(std::uint32_t path, const Vec3& light)>;
   /// Follows all that was begun; visit(path, light) is told what each vertex brings to the pixel, a
   /// path's in their order. False when cancelled on the way.
-  bool trace(const Cancel& cancel, FunctionRef<void(std::uint32_t path, const Vec3& light)> visit);
+  bool trace(const Cancel& cancel, Visit visit);
 
   std::uint64_t ray_count() const {
     return ray_count_ + caster_.ray_count() + lamp_caster_.ray_count() + added_light_.ray_count();
@@ -38,6 +39,7 @@ class BounceTracer {
   struct State {
     std::uint32_t path, pixel_seed, sample;
     Vec3 throughput;
+    Vec3 normal;  // of the surface that its ray has left
   };
 
   void leave(std::uint32_t vertex, const SurfaceBatch& surfaces, std::uint32_t surface,
@@ -45,6 +47,8 @@ class BounceTracer {
   void take_next();
   /// Of lamps, and what Fast GI adds.
   bool find_more_light(const RenderContext& context, std::uint32_t vertex, const Cancel& cancel);
+  float light_share(std::uint32_t surface, const Vec3& direction) const;
+  void add_sky(const Visit& visit) const;
   bool find_surfaces(std::uint32_t vertex, const Cancel& cancel);
 
   RenderContext context_;

@@ -97,6 +97,7 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
       settings.environment_sampling == EnvironmentSampling::kProduct) {
     context.product = map->product_table().view();
   }
+  context.shares_light = !scene.splits_light_rays() && !is_dark(context);
   context.transparent = settings.film_transparent;
   context.seed = settings.seed;
   context.light_samples = resolved_light_samples(settings);

@@ -47,6 +47,9 @@ struct RenderContext {
   float surface_factor = 1.0f, map_factor = 1.0f;
   float surface_distance = Ray{}.t_max;
   std::uint32_t world_max_bounces = 0;  ///< Settings
+  /// Whether scattered rays see what light rays see, so that both can bring the sky's light
+  /// (scatter.h).
+  bool shares_light = false;
   /// Whether rays may leave above coarse smooth surfaces, and then go below their own triangle, or
   /// cosines be cut (core/terminator.h). Points have a terminator where any of their rays heeds it.
   bool has_terminators = false, lifts_rays = false, bends_round = false, cuts_cosines = false;

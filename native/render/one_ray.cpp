@@ -86,14 +86,20 @@ void for_each_light_ray(const RenderContext& context, const SurfacePoint& point,
   }
 }
 
-/// The mean over a point's light rays.
+/// The mean over a point's light rays; their part where scattered rays bring some of it.
 Vec3 mean_light(const RenderContext& context, const SurfacePoint& point, const Hit& hit,
-                const Sampler& sampler, std::uint32_t sample, float time) {
+                const Sampler& sampler, std::uint32_t sample, float time, bool shares = false) {
   Vec3 light(0.0f);
-  for_each_light_ray(context, point, hit, sampler, sample, time,
-                     [&](const LightSample& drawn, bool visible) {
-                       if (visible) light += drawn.contribution;
-                     });
+  for_each_light_ray(
+      context, point, hit, sampler, sample, time, [&](const LightSample& drawn, bool visible) {
+        if (!visible) return;
+        if (!shares) {
+          light += drawn.contribution;
+          return;
+        }
+        light += drawn.contribution *
+                 light_ray_share(context, point.normal, point.geometric_normal, drawn.direction);
+      });
   return light / static_cast<float>(context.light_samples);
 }
 
@@ -122,12 +128,17 @@ void add_bounces(const RenderContext& context, MaterialShader& shader, SurfacePo
     Ray ray;
     if (!scatter(context, vertex, from, sampler, sample, throughput, ray)) return;
     hit = intersect_scalar(context.scene, ray);
-    if (!hit.valid()) return;
+    if (!hit.valid()) {
+      if (!shares_light(context, vertex)) return;
+      radiance += scattered_sky(context, throughput, from.normal, ray.direction);
+      return;
+    }
     point = surface_point(context.scene, hit, ray);
     const Shading shading =
         shade_surface(context, shader, hit, ray, sampler.pixel_seed, sample, vertex + 1, point);
     const RenderContext later = later_context(context, vertex + 1);
-    Vec3 light = mean_light(later, point, hit, sampler, sample, time);
+    Vec3 light =
+        mean_light(later, point, hit, sampler, sample, time, shares_light(context, vertex + 1));
     if (has_more_light(later)) {
       light += more_light(later, point, hit, sampler, vertex + 1, sample, time);
     }

@@ -149,6 +149,49 @@ TEST(Bounces, UnderAMapAgreeWithBruteForce) {
   }
 }
 
+/// The probe's pixels, with or without the light that scattered rays bring where they leave.
+Estimate with_sky_shared(const Scene& scene, const Settings& settings, bool shares) {
+  const FilterTable filter(settings.pixel_filter, settings.filter_width);
+  RenderContext context = make_context(scene, settings, filter.view());
+  EXPECT_TRUE(context.shares_light);
+  context.shares_light = shares;
+  context.passes = {};
+  context.light_samples = 1;
+  std::vector<PixelPlace> pixels;
+  for (std::uint32_t i = 0; i < 256; ++i) pixels.push_back({i % 16, i / 16});
+  std::vector<Vec3> radiance(settings.samples * pixels.size());
+  EXPECT_TRUE(BatchIntegrator(context).sample(pixels, settings.samples, radiance.data(), Cancel()));
+  std::vector<float> means(4 * pixels.size());
+  for (std::size_t i = 0; i < radiance.size(); ++i) {
+    means[i / settings.samples * 4] += radiance[i].x / static_cast<float>(settings.samples);
+  }
+  return estimate(means);
+}
+
+TEST(Bounces, ShareTheSkyWithLightRaysWithoutBias) {
+  const auto scene = corner();
+  for (const auto method : {Method::kWorldLight, Method::kAmbientOcclusion}) {
+    for (const auto sampling : {EnvironmentSampling::kProduct, EnvironmentSampling::kMis,
+                                EnvironmentSampling::kCosine, EnvironmentSampling::kEnvironment}) {
+      Settings settings;
+      settings.method = method;
+      settings.environment_sampling = sampling;
+      const bool uniform = sampling == EnvironmentSampling::kEnvironment;
+      settings.ao_sampling = uniform ? AoSampling::kUniform : AoSampling::kCosine;
+      settings.ao_distance = 3.0f;
+      settings.sample_clamp_indirect = 0.0f;
+      settings.samples = 256;
+      settings.bounces = 4;
+      const Estimate apart = with_sky_shared(*scene, settings, false);
+      const Estimate shared = with_sky_shared(*scene, settings, true);
+      EXPECT_NE(shared.mean, apart.mean);
+      EXPECT_NEAR(shared.mean, apart.mean, 4.0 * std::hypot(shared.error, apart.error));
+      EXPECT_LT(shared.error, 1.1 * apart.error);  // which is itself known to 4 %
+      EXPECT_LT(apart.error, 0.02 * apart.mean);
+    }
+  }
+}
+
 TEST(Bounces, OfSurfacesWithMaterialsAreThoseOfClay) {
   const auto scene = corner(true);
   Settings settings;
