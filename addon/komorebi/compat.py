@@ -49,6 +49,11 @@ def shadow_terminator(obj: Any) -> tuple[float, float]:
     return settings.shadow_terminator_geometry_offset, settings.shadow_terminator_offset
 
 
+def has_own_ao_distance(obj: Any) -> bool:
+    """Whether Cycles' Fast GI has another distance for an object than for the world."""
+    return bool(getattr(cycles_or(obj, None), "ao_distance", 0.0) != 0.0)
+
+
 def set_rect(render_pass: Any, pixels: FloatArray) -> None:
     """Writes float32 `pixels` [height, width, channels] into a render pass of that size."""
     channels = pixels.shape[2]

@@ -59,6 +59,7 @@ struct RenderContext {
   bool transparent = false;
   std::uint32_t seed = 0;
   std::uint32_t light_samples = 1;
+  std::uint32_t lamp_samples = 0;  ///< rays to lamps from a surface; 0: by light_samples
 
   FilmSteps film_steps;  ///< for the Vector pass
   StepsView steps;

@@ -20,6 +20,7 @@ void lift(const Terminator& end, float share, const LampSample& drawn, const Vec
 
 std::uint32_t lamp_rays(const RenderContext& context) {
   if (context.lamps.count == 0) return 0;
+  if (context.lamp_samples > 0) return context.lamp_samples;
   return is_dark(context) ? context.light_samples : (context.light_samples + 1) / 2;
 }
 

@@ -67,6 +67,7 @@ RenderContext later_context(const RenderContext& given, std::uint32_t vertex) {
   RenderContext context = given;
   context.albedo = lit_albedo(given, vertex);
   context.light_samples = kLaterLightSamples;
+  context.lamp_samples = kLaterLampSamples;
   context.light_dimension = vertex_dimension(vertex, kVertexLightDirection);
   if (vertex == given.fast_gi.last_vertex) end_in_ambient(context);
   if (vertex > given.world_max_bounces && context.sky.width > 0) {

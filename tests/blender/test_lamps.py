@@ -207,6 +207,10 @@ def test_fast_gi_reads_factor_and_distance_of_the_world(folder):
     scene.world.light_settings.distance = 3.5
     # Nearer than that the roof hides all but what grazes: cos² of the angle at its limit.
     expect(folder, 0.25 * math.pi * (3.0 / 3.5) ** 2, 2e-2)
+    scene.komorebi.fast_gi_method = "REPLACE"
+    assert warnings_of(folder) == ""
+    bpy.context.object.cycles.ao_distance = 1.0
+    assert "an AO Distance of its own is not supported yet" in warnings_of(folder)
     scene.world = None
     assert irradiance(folder) == 0.0
 
