@@ -218,8 +218,9 @@ def test_pictures_are_averaged_for_bounces_alone():
                 bent = node(tree, "NormalMap", Color=color).outputs[0]
                 return node(tree, "BsdfDiffuse", Normal=bent).outputs[0]
             if "alpha" in links:
-                shader = node(tree, "BsdfPrincipled", Alpha=texture.outputs["Alpha"])
-                tree.links.new(color, shader.inputs["Base Color"])
+                shader = node(tree, "MixShader", Fac=texture.outputs["Alpha"])
+                tree.links.new(clear(tree), shader.inputs[1])
+                tree.links.new(node(tree, "BsdfDiffuse", Color=color).outputs[0], shader.inputs[2])
                 return shader.outputs[0]
             return node(tree, "BsdfDiffuse", Color=color).outputs[0]
 
