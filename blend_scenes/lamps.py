@@ -65,4 +65,46 @@ def lamps() -> None:
     set_world((0.0, 0.0, 0.0))
 
 
-SCENES: dict[str, Callable[[], None]] = {"lamps": lamps}
+def add_nodes(lamp: bpy.types.Object, falloff: str, smooth: float, kelvin: float) -> None:
+    """Light of a temperature that falls off in a way of its own, halved by a Math node."""
+    lamp.data.use_nodes = True
+    tree = lamp.data.node_tree
+    emission = tree.nodes["Emission"]
+    node, half = tree.nodes.new("ShaderNodeLightFalloff"), tree.nodes.new("ShaderNodeMath")
+    node.inputs["Strength"].default_value, node.inputs["Smooth"].default_value = 1.6, smooth
+    half.operation, half.inputs[1].default_value = "MULTIPLY", 0.5
+    tree.links.new(node.outputs[falloff], half.inputs[0])
+    tree.links.new(half.outputs[0], emission.inputs["Strength"])
+    blackbody = tree.nodes.new("ShaderNodeBlackbody")
+    blackbody.inputs[0].default_value = kelvin
+    tree.links.new(blackbody.outputs[0], emission.inputs["Color"])
+
+
+def lamp_nodes() -> None:
+    """A corner with a ball and a block, in the light of lamps with nodes of every falloff, two of
+    which bounce less often than the others."""
+    empty_scene(320, 240)
+    add_rectangle("Floor", (-4.0, -4.0, 0.0), (8.0, 0.0, 0.0), (0.0, 8.0, 0.0))
+    add_rectangle("Wall", (-4.0, 3.0, 0.0), (8.0, 0.0, 0.0), (0.0, 0.0, 5.0))
+    add_rectangle("Side", (-3.0, -4.0, 0.0), (0.0, 8.0, 0.0), (0.0, 0.0, 5.0))
+    add_box("Block", (1.2, 0.5, 1.6), (-0.9, 1.2, 0.8))
+    add_sphere("Ball", 0.6, (0.9, 0.4, 0.6), level=5)
+    things = (
+        ("Quadratic", "POINT", {"shadow_soft_size": 0.3, "energy": 30.0}, 2.0, 4000.0, 1024),
+        ("Linear", "AREA", {"shape": "RECTANGLE", "size": 1.2, "size_y": 0.5, "energy": 10.0}, 0.0,
+         2500.0, 1024),
+        ("Constant", "SPOT", {"shadow_soft_size": 0.0, "energy": 12.0, "spot_size": radians(70)},
+         1.0, 8000.0, 1),
+        ("Quadratic", "POINT", {"shadow_soft_size": 0.0, "energy": 40.0}, 0.0, 12000.0, 0),
+    )  # fmt: skip
+    places = ((-2.0, -1.0, 1.5), (1.5, 1.5, 3.5), (2.0, -2.0, 3.0), (0.0, 2.2, 0.8))
+    for (falloff, kind, given, smooth, kelvin, bounces), place in zip(things, places, strict=True):
+        lamp = add_lamp(falloff, kind, **given)
+        lamp.location = place
+        add_nodes(lamp, falloff, smooth, kelvin)
+        lamp.data.cycles.max_bounces = bounces
+    add_camera((3.5, -6.0, 3.6), (-0.4, 0.6, 1.0), lens=32.0)
+    set_world((0.0, 0.0, 0.0))
+
+
+SCENES: dict[str, Callable[[], None]] = {"lamps": lamps, "lamp_nodes": lamp_nodes}

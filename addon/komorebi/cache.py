@@ -10,13 +10,15 @@ beyond the limit.
 
 from __future__ import annotations
 
+import threading
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any
 
 LIMIT_BYTES = 2 << 30
 
 _entries: OrderedDict[bytes, tuple[Any, int]] = OrderedDict()
+_lock = threading.RLock()  # renders and viewports come here from threads of their own
 _generation = 0
 hits = 0
 misses = 0
@@ -25,15 +27,16 @@ misses = 0
 def get(key: bytes, make: Callable[[], Any]) -> Any:
     """The object of `key`, from `make()` when it is not here; it must tell its `byte_count`."""
     global hits, misses
-    entry = _entries.get(key)
-    if entry is None:
-        misses += 1
-        value = make()
-    else:
-        hits += 1
-        value = entry[0]
-    _entries[key] = (value, _generation)
-    _entries.move_to_end(key)
+    with _lock:
+        entry = _entries.get(key)
+        if entry is None:
+            misses += 1
+        else:
+            hits += 1
+    value = make() if entry is None else entry[0]
+    with _lock:
+        _entries[key] = (value, _generation)
+        _entries.move_to_end(key)
     return value
 
 
@@ -46,18 +49,27 @@ def peek(key: bytes) -> Any | None:
 def next_generation() -> None:
     """A frame begins: what the last one did not use goes."""
     global _generation
-    for key in [k for k, (_, used) in _entries.items() if used < _generation]:
-        del _entries[key]
-    _generation += 1
+    with _lock:
+        for key in [k for k, (_, used) in _entries.items() if used < _generation]:
+            del _entries[key]
+        _generation += 1
 
 
 def make_room(wanted: set[bytes | None]) -> None:
     """Drops the longest unused entries beyond the limit, but none that is wanted now."""
-    total = byte_count()
-    for key in [k for k in _entries if k not in wanted]:
-        if total <= LIMIT_BYTES:
-            break
-        total -= _entries.pop(key)[0].byte_count
+    with _lock:
+        total = byte_count()
+        for key in [k for k in _entries if k not in wanted]:
+            if total <= LIMIT_BYTES:
+                break
+            total -= _entries.pop(key)[0].byte_count
+
+
+def drop(keys: Collection[bytes]) -> None:
+    """These are not wanted any more."""
+    with _lock:
+        for key in keys:
+            _entries.pop(key, None)
 
 
 def end_job(keep: bool) -> None:
@@ -69,7 +81,8 @@ def end_job(keep: bool) -> None:
 
 
 def byte_count() -> int:
-    return sum(value.byte_count for value, _ in _entries.values())
+    with _lock:
+        return sum(value.byte_count for value, _ in _entries.values())
 
 
 def entry_count() -> int:
@@ -77,4 +90,5 @@ def entry_count() -> int:
 
 
 def clear() -> None:
-    _entries.clear()
+    with _lock:
+        _entries.clear()

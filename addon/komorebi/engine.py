@@ -41,6 +41,9 @@ class KomorebiRenderEngine(bpy.types.RenderEngine):
     def __del__(self) -> None:
         try:
             self.frame = None
+            viewport = getattr(self, "viewport", None)
+            if viewport is not None:
+                viewport.close()
             base = super()
             if hasattr(base, "__del__"):
                 base.__del__()
@@ -56,6 +59,23 @@ class KomorebiRenderEngine(bpy.types.RenderEngine):
         frame, self.frame = getattr(self, "frame", None), None
         if frame is not None:
             guard.run(self, depsgraph, "render_frame", frame)
+
+    def view_update(self, context: Any, depsgraph: Any) -> None:
+        """A viewport in Rendered shading: something has changed, or everything is new."""
+        self._viewport().update(self, context, depsgraph)
+
+    def view_draw(self, context: Any, depsgraph: Any) -> None:
+        """Draws the region of a viewport."""
+        self._viewport().draw(self, context, depsgraph)
+
+    def _viewport(self) -> Any:
+        viewport = getattr(self, "viewport", None)
+        if viewport is None:
+            # Late, so that the add-on can be enabled, and can say what is wrong, without NumPy.
+            from .viewport.viewport import Viewport
+
+            viewport = self.viewport = Viewport(self)
+        return viewport
 
     def update_render_passes(self, scene: Any = None, renderlayer: Any = None) -> None:
         """Tells Blender which passes a view layer will have."""

@@ -14,12 +14,15 @@ from bpy.app.handlers import persistent
 
 from . import cache, handlers, jobs
 from .engine import ENGINE_ID
+from .viewport import keys
 
 _was_persistent = False  # the last job was rendered with Persistent Data
 
 
 def _is_wanted() -> bool:
     """Whether a later render may find again what is kept."""
+    if keys.any_shown():
+        return True
     renders = [scene.render for scene in bpy.data.scenes if scene.render.engine == ENGINE_ID]
     if bpy.app.background and not _was_persistent:
         return bool(renders)

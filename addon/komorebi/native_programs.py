@@ -54,9 +54,11 @@ def _averaged(data: SceneData) -> set[bytes]:
 
 
 def _programs(data: SceneData) -> Iterator[ProgramData]:
-    for program in (data.world.program, data.world.camera_program):
+    for program in (data.world.program, data.world.camera_program, data.world_values):
         if program is not None:
             yield program
+    for lamp in data.lamps:
+        if lamp.program is not None:
+            yield lamp.program
     for material in data.materials.materials:
-        if material.surface is not None:
-            yield from material.surface.programs()
+        yield from material.programs()

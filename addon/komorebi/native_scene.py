@@ -7,7 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from . import cache, dump, native_programs, native_surfaces, native_texture, native_world
+from . import (
+    cache,
+    dump,
+    native_lamps,
+    native_programs,
+    native_surfaces,
+    native_texture,
+    native_world,
+)
 from .cryptomatte import name_id
 from .mesh_cache import KnownMesh
 from .scene_data import (
@@ -17,6 +25,7 @@ from .scene_data import (
     FloatArray,
     InstanceData,
     KnownShape,
+    LampData,
     MeshData,
     MeshKey,
     PointData,
@@ -30,6 +39,7 @@ class Parts:
 
     meshes: list[Any] = field(default_factory=list)  # core.Mesh, as SceneData.meshes
     world: native_world.NativeWorld = field(default_factory=native_world.NativeWorld)
+    lamps: list[LampData] = field(default_factory=list)
     programs: Any = None  # native_programs.Programs
     warnings: list[str] = field(default_factory=list)
     builder: str = "LINEAR"  # of the trees that had to be built
@@ -51,14 +61,16 @@ def load(core: Any, data: SceneData, expected_rays: float, threads: int, cancel:
         parts.meshes.append(_mesh(core, mesh, builder, threads, cancel))
         data.meshes[index] = None  # type: ignore[call-overload]
     parts.programs = native_programs.load(core, data, threads, parts.warnings)
+    parts.lamps = native_lamps.load(data.lamps, parts.programs, parts.warnings)
     parts.world = native_world.load(core, data.world, image_key, parts.programs, threads, cancel)
     return parts
 
 
 def build(
-    core: Any, data: SceneData, parts: Parts, camera: CameraData, threads: int, cancel: Any
+    core: Any, data: SceneData, parts: Parts, camera: CameraData | None, threads: int, cancel: Any
 ) -> Any:
-    """A committed core.Scene, seen by `camera`; only the tree over instances is built here."""
+    """A committed core.Scene, seen by `camera` (None: whoever renders it says by which); only the
+    tree over instances is built here."""
     scene = core.Scene()
     indices = [scene.add_mesh(mesh) for mesh in parts.meshes]
     for group in data.instances:
@@ -67,7 +79,7 @@ def build(
             mask=group.mask, flags=group.flags, material_slots=group.material_slots,
             name=group.name, motion=group.motion,
         )  # fmt: skip
-    scene.set_tables(**tables(data))
+    scene.set_tables(**tables(data), **native_surfaces.values(parts.programs, data))
     scene.set_surfaces(
         native_surfaces.surfaces(parts.programs, data.materials), _random(data.instances)
     )
@@ -81,12 +93,19 @@ def build(
         )  # fmt: skip
     if parts.world.camera is not None:
         scene.set_world_program(parts.world.camera, parts.world.max_radiance)
-    for lamp in [*data.lamps, *parts.world.suns]:
+    for lamp in [*parts.lamps, *parts.world.suns]:
         scene.add_lamp(
             lamp.kind, lamp.radiance, lamp.matrix,
             name=lamp.name, casts_shadow=lamp.casts_shadow, lights_catchers=lamp.lights_catchers,
             spot_scales_by_cosine=lamp.spot_scales_by_cosine, **lamp.sizes,
         )  # fmt: skip
+    if camera is not None:
+        _set_camera(scene, camera)
+    scene.commit(threads=threads, cancel=cancel, keep_inputs=dump.is_wanted())
+    return scene
+
+
+def _set_camera(scene: Any, camera: CameraData) -> None:
     try:
         scene.set_camera(
             camera.kind, camera.matrix, camera.clip_start, camera.clip_end,
@@ -96,8 +115,6 @@ def build(
         )  # fmt: skip
     except ValueError as error:
         raise ValueError(str(error).replace("camera:", f'camera "{camera.name}":', 1)) from error
-    scene.commit(threads=threads, cancel=cancel, keep_inputs=dump.is_wanted())
-    return scene
 
 
 def tables(data: SceneData) -> dict[str, Any]:
@@ -114,9 +131,6 @@ def tables(data: SceneData) -> dict[str, Any]:
         "material_pass_index": np.array([m.pass_index for m in materials], np.float32),
         "material_mattes": np.array([name_id(m.name) for m in materials], np.uint32).view(
             np.float32
-        ),
-        "material_values": np.array([m.values for m in materials], np.float32).reshape(
-            len(materials), -1 if materials else 0
         ),
         "slot_begin": np.cumsum([0, *map(len, slots)], dtype=np.uint32),
         "object_colors": np.array([o.color for o in data.objects], np.float32).reshape(-1, 4),

@@ -59,7 +59,7 @@ def load(
         return native
     assert world.program is not None
     light = programs.program(world.program)
-    native.suns = [_sun(sun, light, programs) for sun in world.suns]
+    native.suns = [_sun(sun, light, programs, world.max_bounces) for sun in world.suns]
     color = tuple(light.constants)
     if None not in color:
         native.color = tuple(max(c, 0.0) for c in color)
@@ -76,7 +76,7 @@ def load(
     return native
 
 
-def _sun(sun: SunData, light: Any, programs: Programs) -> LampData:
+def _sun(sun: SunData, light: Any, programs: Programs, max_bounces: int) -> LampData:
     """What of a sky's sun reaches the world's surface, through all that lies between: the world
     with its disc less that without."""
     towards = np.array([sun.direction], np.float32)
@@ -90,9 +90,8 @@ def _sun(sun: SunData, light: Any, programs: Programs) -> LampData:
     ).astype(np.float64)
     matrix = np.eye(4)
     matrix[:3, :3] = _axes_towards(towards[0].astype(np.float64))
-    return LampData(
-        "the sky's sun", "SUN", np.maximum(radiance, 0.0), matrix, {"angle": 2.0 * sun.radius}
-    )
+    sizes = {"angle": 2.0 * sun.radius, "max_bounces": float(max_bounces)}
+    return LampData("the sky's sun", "SUN", np.maximum(radiance, 0.0), matrix, sizes)
 
 
 def _axes_towards(z: DoubleArray) -> DoubleArray:

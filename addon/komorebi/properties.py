@@ -37,17 +37,44 @@ AO_SAMPLINGS = (
     ("COSINE", "Cosine", "Rays by the cosine of their angle to the normal: the least noise"),
     ("UNIFORM", "Uniform", "Rays evenly over the hemisphere: same result, more noise"),
 )
+VIEW_PASSES = (
+    ("COMBINED", "Combined", "The picture"),
+    ("EMISSION", "Emission", "What shines"),
+    ("ENVIRONMENT", "Environment", "The world behind everything"),
+    ("AO", "Ambient Occlusion", "How much of a white sky each point sees, within the distance"),
+    ("SKY_VISIBILITY", "Sky Visibility", "The same at any distance"),
+    ("DIFFUSE_COLOR", "Diffuse Color", "The colour of surfaces"),
+    ("NORMAL", "Normal", "Where surfaces face"),
+    ("BENT_NORMAL", "Bent Normal", "Where most light of a white sky comes from"),
+    ("POSITION", "Position", "Where surfaces are"),
+    ("UV", "UV", "The active UV map"),
+    ("DEPTH", "Depth", "How far away surfaces are"),
+    ("MIST", "Mist", "How far away surfaces are, by the world's mist"),
+)
 ENVIRONMENT_SAMPLINGS = (
     ("MIS", "Multiple Importance", "The next two together, each where it is good at it"),
     ("COSINE", "Cosine", "Rays by the surface's cosine: good for even skies"),
     ("ENVIRONMENT", "Environment", "Rays by the map's brightness: good for small bright suns"),
     ("PRODUCT", "Product", "In proportion to the light's brightness times the surface's cosine"),
 )
+FAST_GI_METHODS = (
+    ("REPLACE", "Replace", "After some bounces ambient occlusion is all that is left of the light"),
+    ("ADD", "Add", "White ambient light comes to every surface besides"),
+)
 PIXEL_FILTERS = (
     ("BLACKMAN_HARRIS", "Blackman-Harris", "Smooth and sharp"),
     ("GAUSSIAN", "Gaussian", "Smoother"),
     ("BOX", "Box", "Each pixel by itself"),
 )
+
+
+class KomorebiViewSettings(bpy.types.PropertyGroup):
+    """Settings of Komorebi in one 3D viewport"""
+
+    render_pass: EnumProperty(
+        name="Render Pass", description="What the rendered viewport shows", items=VIEW_PASSES,
+        default="COMBINED",
+    )  # fmt: skip
 
 
 class KomorebiSceneSettings(bpy.types.PropertyGroup):
@@ -61,6 +88,14 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         description="Camera samples a pixel; with a noise threshold the most that one may take",
         default=32, min=1, max=1 << 24,
     )  # fmt: skip
+    preview_samples: IntProperty(
+        name="Viewport Samples",
+        description="Camera samples a pixel in the viewport; 0 goes on for ever",
+        default=64, min=0, max=1 << 24,
+    )  # fmt: skip
+    preview_pause: BoolProperty(
+        name="Pause Preview", description="The rendered viewport stands still", default=False
+    )
     # Off, though Cycles has it on: at these few samples it is no sooner at the same error (ambient
     # occlusion, 192 × 108: 0.0047 in 0.78 s both ways; 8 % sooner at 0.0028), and parts of a
     # picture that are to be put together need every sample. The threshold is automatic, for
@@ -177,6 +212,24 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         "light with them; 0 is no limit",
         default=10.0, min=0.0, max=1e8,
     )  # fmt: skip
+    # Names, meaning and values of these three are those of Cycles; its factor and distance are the
+    # world's own.
+    use_fast_gi: BoolProperty(
+        name="Fast GI Approximation",
+        description="For previews under World Light: ambient occlusion, coloured by the world, in "
+        "place of light that bounces often, or besides",
+        default=False,
+    )
+    fast_gi_method: EnumProperty(
+        name="Method", description="What ambient occlusion does to the light",
+        items=FAST_GI_METHODS, default="REPLACE",
+    )  # fmt: skip
+    ao_bounces_render: IntProperty(
+        name="Render Bounces",
+        description="How often light may come from a surface, the last time by ambient occlusion: "
+        "1 is ambient occlusion of what is seen; 0 switches the approximation off",
+        default=1, min=0, max=1024,
+    )  # fmt: skip
     environment_sampling: EnumProperty(
         name="Environment Sampling", description="How rays towards the world are chosen",
         items=ENVIRONMENT_SAMPLINGS, default="PRODUCT",
@@ -262,6 +315,7 @@ def register() -> None:
     bpy.utils.register_class(KomorebiSceneSettings)
     bpy.utils.register_class(KomorebiMaterialSettings)
     bpy.utils.register_class(KomorebiViewLayerSettings)
+    bpy.utils.register_class(KomorebiViewSettings)
     bpy.types.Scene.komorebi = PointerProperty(name="Komorebi Settings", type=KomorebiSceneSettings)
     bpy.types.Material.komorebi = PointerProperty(
         name="Komorebi Material Settings", type=KomorebiMaterialSettings
@@ -269,12 +323,17 @@ def register() -> None:
     bpy.types.ViewLayer.komorebi = PointerProperty(
         name="Komorebi View Layer Settings", type=KomorebiViewLayerSettings
     )
+    bpy.types.View3DShading.komorebi = PointerProperty(
+        name="Komorebi View Settings", type=KomorebiViewSettings
+    )
 
 
 def unregister() -> None:
+    del bpy.types.View3DShading.komorebi
     del bpy.types.ViewLayer.komorebi
     del bpy.types.Material.komorebi
     del bpy.types.Scene.komorebi
+    bpy.utils.unregister_class(KomorebiViewSettings)
     bpy.utils.unregister_class(KomorebiViewLayerSettings)
     bpy.utils.unregister_class(KomorebiMaterialSettings)
     bpy.utils.unregister_class(KomorebiSceneSettings)

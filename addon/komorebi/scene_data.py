@@ -304,6 +304,7 @@ class WorldData:
     resolution: int = 0  # columns of pixels of the map that is made from the program; 0: automatic
     camera_program: ProgramData | None = None  # what camera rays see; None: the same
     suns: list[SunData] = field(default_factory=list)  # besides `program`
+    max_bounces: int = 1024  # of the suns
 
 
 @dataclass(slots=True)
@@ -318,6 +319,8 @@ class LampData:
     casts_shadow: bool = True
     lights_catchers: bool = True
     spot_scales_by_cosine: bool = False
+    program: ProgramData | None = None  # of what its light is multiplied by, three outputs
+    uneven: str = ""  # the warning if that varies over the lamp
 
 
 @dataclass(slots=True)
@@ -340,8 +343,13 @@ class MaterialData:
 
     name: str
     pass_index: int
-    values: list[float] = field(default_factory=list)  # passes.value_columns
     surface: SurfaceData | None = None
+    values: ProgramData | None = None  # an output for each of passes.value_columns; None: all 0
+
+    def programs(self) -> list[ProgramData]:
+        """All that are run at its surfaces."""
+        of_surface = [] if self.surface is None else self.surface.programs()
+        return of_surface + ([self.values] if self.values else [])
 
 
 @dataclass(slots=True)
@@ -350,6 +358,7 @@ class Materials:
 
     materials: list[MaterialData] = field(default_factory=list)
     slots: list[tuple[int, ...]] = field(default_factory=list)  # indices of materials
+    value_count: int = 0  # outputs of MaterialData.values
 
 
 @dataclass(slots=True)
@@ -363,6 +372,7 @@ class SceneData:
     objects: list[ObjectData] = field(default_factory=list)
     lamps: list[LampData] = field(default_factory=list)
     materials: Materials = field(default_factory=Materials)
+    world_values: ProgramData | None = None  # as MaterialData.values, where there is only world
     texture_limit: int = 1 << 30  # bytes of all textures together
     ignored: dict[str, int] = field(default_factory=dict)  # kind of object → how many
 

@@ -14,11 +14,10 @@ class Candidates {
  public:
   Candidates(const SceneView& scene, const WorldBundle& bundle)
       : filter_(scene.filter), bundle_(bundle) {}
+  Candidates(const Candidates&) = delete;
 
   void add(std::uint32_t i, const Hit& hit) {
-    HitQuery& query = query_[count_];
-    query.hit = hit;
-    query.ray = bundle_.ray(i);
+    HitQuery& query = *new (&query_[count_]) HitQuery{hit, bundle_.ray(i)};
     query.ray.path_key = bundle_.path_key[i];
     ray_[count_++] = i;
   }
@@ -41,7 +40,9 @@ class Candidates {
   std::uint32_t count_ = 0;
   std::uint32_t ray_[kMost];
   bool accepted_[kMost];
-  HitQuery query_[kMost];
+  union {  // not set to anything before: 18 KiB an instance that a bundle enters
+    HitQuery query_[kMost];
+  };
 };
 
 /// Calls walk(tree, rays, list, address) for rays of one octant and tree after the other, with what

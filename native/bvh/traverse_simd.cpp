@@ -1,5 +1,7 @@
 // Compiles the kernels of traverse_simd-inl.h for every instruction set: Highway includes this
 // file again for each, with other compiler options.
+#include <new>
+
 #include "bvh/closest.h"
 #include "bvh/kernel.h"
 #include "bvh/moving_leaf.h"

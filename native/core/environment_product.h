@@ -53,6 +53,18 @@ inline Selection select(const std::uint32_t* cdf, std::uint32_t first, std::uint
   return {first, fraction, width / total};
 }
 
+/// The share of one entry among first…last of cumulative numbers, where not all are 0.
+inline double share(const std::uint32_t* cdf, std::uint32_t first, std::uint32_t last,
+                    std::uint32_t entry) {
+  const std::uint32_t total = cdf[last] - cdf[first];
+  return total > 0 ? static_cast<double>(cdf[entry + 1] - cdf[entry]) / total : 0.0;
+}
+
+/// Which of `cells` even pieces of 0…count an entry is in: piece c begins at ⌊count · c / cells⌋.
+inline std::uint32_t cell_of(std::uint32_t entry, std::uint32_t count, std::uint32_t cells) {
+  return static_cast<std::uint32_t>(((std::uint64_t{entry} + 1) * cells - 1) / count);
+}
+
 /// A fraction as a float below 1.
 inline float below_one(double fraction) {
   const auto f = static_cast<float>(fraction);
@@ -88,6 +100,29 @@ inline EnvironmentSample sample_product(const EnvironmentView& e, const ProductV
   return detail::sample_patch(e, at_row, patch_column.entry,
                               detail::below_one(patch_column.fraction),
                               detail::below_one(patch_row.fraction), probability);
+}
+
+/// The density of sample_product choosing `direction` (world space, unit) for that normal.
+inline float product_pdf(const EnvironmentView& e, const ProductView& p, const Vec3& normal,
+                         const Vec3& direction) {
+  const std::uint32_t bin = octahedral_cell(e.texture_from_world * normal, p.bins);
+  const std::uint32_t* row_cdf = p.row_cdf + bin * (p.rows + 1);
+  if (row_cdf[p.rows] == 0) return 0.0f;
+  const auto at = detail::locate(e, e.texture_from_world * direction);
+  const std::uint32_t patch_row = at.patch.row, patch_column = at.patch.column;
+  const std::uint32_t row = detail::cell_of(patch_row, e.height + 1, p.rows);
+  const std::uint32_t column = detail::cell_of(patch_column, e.width, p.columns);
+  const std::uint32_t first_row = p.patch_row[row];
+  const double probability =
+      (detail::share(row_cdf, 0, p.rows, row) *
+       detail::share(p.column_cdf + (std::uint64_t{bin} * p.rows + row) * (p.columns + 1), 0,
+                     p.columns, column)) *
+      (detail::share(p.patch_row_cdf + column * (e.height + 1 + p.rows) + first_row + row, 0,
+                     p.patch_row[row + 1] - first_row, patch_row - first_row) *
+       detail::share(detail::patch_columns(e, patch_row), p.patch_column[column],
+                     p.patch_column[column + 1], patch_column));
+  return detail::density_in_patch(e, at.patch, detail::patch_weights(e, at.patch), at.s,
+                                  at.z_fraction, probability);
 }
 
 }  // namespace komorebi

@@ -33,12 +33,30 @@ struct Spot {
   bool scales_by_cosine = false;  ///< Cycles 3.x
 };
 
+/// How light falls off with the distance d but for what distance does by itself: by
+/// d^power · d² / (d² + smooth), of Cycles' node Light Falloff.
+struct Falloff {
+  std::uint32_t power = 0;  ///< 0 to 2: quadratic, linear, constant
+  float smooth = 0.0f;      ///< square metres
+
+  bool exists() const { return power > 0 || smooth > 0.0f; }
+  float at(float d) const {
+    const float d2 = d * d;
+    const float factor = power == 0 ? 1.0f : power == 1 ? d : d2;
+    return smooth > 0.0f ? factor * (d2 / (d2 + smooth)) : factor;
+  }
+};
+
+inline constexpr std::uint32_t kMostBounces = 1024;
+
 /// A lamp as it is sampled, in the scene's space.
 struct Lamp {
   LampKind kind = LampKind::kPoint;
   std::uint32_t flags = 0;
-  Vec3 radiance{0.0f};               ///< or what its kind says; may be negative
-  Vec3 position{0.0f};               ///< of the middle
+  std::uint32_t max_bounces = kMostBounces;  ///< it lights no vertex of a path beyond that
+  Falloff falloff;                           ///< none of what is distant
+  Vec3 radiance{0.0f};                       ///< or what its kind says; may be negative
+  Vec3 position{0.0f};                       ///< of the middle
   Vec3 direction{0.0f, 0.0f, 1.0f};  ///< a sun: to the light; an area: where it shines; unit
   float radius = 0.0f;               ///< of sphere and disk; of a tangent sun: the tangent
   float one_minus_cos = 0.0f;        ///< of a sun's angular radius

@@ -7,9 +7,10 @@ namespace komorebi {
 /// A node of the tree over lamps that are at a place: what it holds, as one ball of light.
 struct LampNode {
   Vec3 centre{0.0f};
-  float radius = 0.0f;      ///< of a ball around all of its lamps
-  float power = 0.0f;       ///< the most that goes to any side, in sum: radiant intensity
-  std::uint32_t first = 0;  ///< lamp, or the first of two children, next to each other
+  float radius = 0.0f;            ///< of a ball around all of its lamps
+  float power = 0.0f;             ///< the most that goes to any side, in sum: radiant intensity
+  std::uint32_t max_bounces = 0;  ///< most of its lamps'
+  std::uint32_t first = 0;        ///< lamp, or the first of two children, next to each other
   std::uint32_t is_leaf = 0;
 };
 
@@ -110,6 +111,9 @@ inline float lamp_importance(const Lamp& lamp, const Vec3& p, const Vec3& normal
   const float radius = reach_of(lamp);
   float importance = detail::ball_importance(lamp.position, radius, power_of(lamp), p, normal);
   const Vec3 from = p - lamp.position;
+  if (lamp.falloff.exists()) {
+    importance *= lamp.falloff.at(max_of(std::sqrt(glm::dot(from, from)), radius));
+  }
   if (is_area(lamp.kind)) {
     if (!(glm::dot(from, lamp.direction) > 0.0f)) return 0.0f;
   } else if (lamp.spot.cosine >= -1.0f) {
@@ -132,14 +136,20 @@ inline float node_importance(const LampsView& lamps, const LampNode& node, const
 /// Chooses the lamp that a ray from p goes to in proportion to about what it brings: one of the
 /// single ones, or one that is found by going down the tree (Conty Estévez and Kulla 2018), with
 /// the random number stretched to its full range at each step.
-/// @param u  in [0, 1)
-inline LampChoice choose_lamp(const LampsView& lamps, const Vec3& p, const Vec3& normal, double u) {
-  using detail::node_importance;
+/// @param vertex  of a path, that p is: lamps of fewer bounces are not there
+/// @param u       in [0, 1)
+inline LampChoice choose_lamp(const LampsView& lamps, const Vec3& p, const Vec3& normal,
+                              std::uint32_t vertex, double u) {
   const auto single = [&](std::uint32_t i) {
-    return static_cast<double>(lamp_importance(lamps.lamps[i], p, normal));
+    const Lamp& lamp = lamps.lamps[i];
+    return lamp.max_bounces < vertex ? 0.0 : static_cast<double>(lamp_importance(lamp, p, normal));
   };
-  const auto in_tree = static_cast<double>(
-      lamps.nodes != nullptr ? node_importance(lamps, lamps.nodes[0], p, normal) : 0.0f);
+  const auto of_node = [&](const LampNode& node) {
+    return node.max_bounces < vertex
+               ? 0.0
+               : static_cast<double>(detail::node_importance(lamps, node, p, normal));
+  };
+  const double in_tree = lamps.nodes != nullptr ? of_node(lamps.nodes[0]) : 0.0;
   double total = in_tree;
   for (std::uint32_t i = 0; i < lamps.single_count; ++i) total += single(i);
   LampChoice choice;
@@ -164,8 +174,7 @@ inline LampChoice choose_lamp(const LampsView& lamps, const Vec3& p, const Vec3&
     const LampNode* node = lamps.nodes;
     while (!node->is_leaf) {
       const LampNode* children = lamps.nodes + node->first;
-      const auto a = static_cast<double>(node_importance(lamps, children[0], p, normal));
-      const auto b = static_cast<double>(node_importance(lamps, children[1], p, normal));
+      const double a = of_node(children[0]), b = of_node(children[1]);
       if (!(a + b > 0.0)) return choice;
       const double share = a / (a + b);
       const bool first = u < share;

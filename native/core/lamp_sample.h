@@ -204,22 +204,32 @@ inline LampSample sample_sun(const Lamp& lamp, const Vec2& u) {
 
 }  // namespace detail
 
+namespace detail {
+
+inline LampSample sample_kind(const Lamp& lamp, const Vec3& p, const Vec3& normal, const Vec2& u) {
+  switch (lamp.kind) {
+    case LampKind::kSphere:
+      return sample_sphere(lamp, p, normal, u);
+    case LampKind::kDisk:
+      return sample_disk(lamp, p, u);
+    case LampKind::kPoint:
+      return sample_point(lamp, p);
+    case LampKind::kRectangle:
+    case LampKind::kEllipse:
+      return sample_area(lamp, p, u);
+    default:
+      return sample_sun(lamp, u);
+  }
+}
+
+}  // namespace detail
+
 /// Draws a direction in which light of `lamp` may come to a point with this shading normal, by
 /// solid angle wherever that is known.
 inline LampSample sample_lamp(const Lamp& lamp, const Vec3& p, const Vec3& normal, const Vec2& u) {
-  switch (lamp.kind) {
-    case LampKind::kSphere:
-      return detail::sample_sphere(lamp, p, normal, u);
-    case LampKind::kDisk:
-      return detail::sample_disk(lamp, p, u);
-    case LampKind::kPoint:
-      return detail::sample_point(lamp, p);
-    case LampKind::kRectangle:
-    case LampKind::kEllipse:
-      return detail::sample_area(lamp, p, u);
-    default:
-      return detail::sample_sun(lamp, u);
-  }
+  LampSample sample = detail::sample_kind(lamp, p, normal, u);
+  if (lamp.falloff.exists()) sample.radiance *= lamp.falloff.at(sample.distance);
+  return sample;
 }
 
 }  // namespace komorebi

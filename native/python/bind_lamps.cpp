@@ -46,7 +46,9 @@ radiance: float64 [3], linear Rec. 709, may be negative. matrix: world from lamp
 M @ p; a sun stands along +z. By name, float: radius (metres, not scaled by the matrix), angle
 (radians across a sun), size_u and size_v (metres along x and y before the matrix), spread (radians
 across, of an area; 0: parallel rays), spot_angle (radians across a cone around −z; 0: none),
-spot_blend (0 to 1). lights_catchers: whether it is there where shadow catchers are lit alone.
+spot_blend (0 to 1), falloff_power (0, 1 or 2) and falloff_smooth (square metres): light is
+multiplied by d^power · d² / (d² + smooth) at a distance d; max_bounces (after more of them it
+lights nothing). lights_catchers: whether it is there where shadow catchers are lit alone.
 Raises ValueError naming the lamp.)")
       .def_property_readonly("lamp_count", [](const Scene& s) { return s.lamp_inputs().size(); });
 }

@@ -118,16 +118,27 @@ void add_instances(Scene& scene, std::uint32_t mesh, const py::array& matrices,
   }
 }
 
+std::shared_ptr<CameraDesc> make_camera_desc(const std::string& kind, const py::object& matrix,
+                                             double clip_start, double clip_end,
+                                             std::uint32_t width, std::uint32_t height,
+                                             const py::object& lens, const py::object& panorama,
+                                             const py::object& stereo, const py::object& shutter,
+                                             const py::object& motion) {
+  auto camera = std::make_shared<CameraDesc>(
+      camera_input(kind, matrix, lens, panorama, stereo, shutter, motion));
+  camera->clip_start = clip_start;
+  camera->clip_end = clip_end;
+  camera->width = width;
+  camera->height = height;
+  return camera;
+}
+
 void set_camera(Scene& scene, const std::string& kind, const py::object& matrix, double clip_start,
                 double clip_end, std::uint32_t width, std::uint32_t height, const py::object& lens,
                 const py::object& panorama, const py::object& stereo, const py::object& shutter,
                 const py::object& motion) {
-  CameraDesc camera = camera_input(kind, matrix, lens, panorama, stereo, shutter, motion);
-  camera.clip_start = clip_start;
-  camera.clip_end = clip_end;
-  camera.width = width;
-  camera.height = height;
-  scene.set_camera(camera);
+  scene.set_camera(*make_camera_desc(kind, matrix, clip_start, clip_end, width, height, lens,
+                                     panorama, stereo, shutter, motion));
 }
 
 void set_world_environment(Scene& scene, std::shared_ptr<const Environment> environment,
@@ -142,11 +153,23 @@ void set_world_environment(Scene& scene, std::shared_ptr<const Environment> envi
   scene.set_world_environment(std::move(environment), strength, rotation);
 }
 
+/// What shader AOVs say, as a program; null where nothing is given.
+std::shared_ptr<const Program> values_program(const py::handle& given, std::uint32_t count) {
+  if (given.is_none()) return nullptr;
+  auto program = given.cast<std::shared_ptr<Program>>();
+  if (program->output_count() != count) {
+    throw std::invalid_argument(program->name() + ": a program of values has as many outputs as " +
+                                "material_values has columns");
+  }
+  return program;
+}
+
 void set_tables(Scene& scene, const py::object& object_pass_index, const py::object& object_mattes,
                 const py::object& object_terminators, const py::object& material_pass_index,
                 const py::object& material_mattes, const py::object& slot_begin,
                 const py::object& slots, const py::object& material_values,
-                const py::object& object_colors) {
+                const py::object& object_colors, const py::object& value_programs,
+                const py::object& world_values) {
   const auto object_index = view<float>(object_pass_index, "object_pass_index", {-1});
   const auto objects = static_cast<py::ssize_t>(object_index.size());
   const auto object_ids = view<float>(object_mattes, "object_mattes", {objects, 2});
@@ -174,6 +197,15 @@ void set_tables(Scene& scene, const py::object& object_pass_index, const py::obj
   if (materials > 0) {
     tables.value_count = static_cast<std::uint32_t>(values.size() / material_index.size());
   }
+  if (!value_programs.is_none()) {
+    for (const py::handle& item : value_programs.cast<py::list>()) {
+      tables.value_programs.push_back(values_program(item, tables.value_count));
+    }
+    if (tables.value_programs.size() != material_index.size()) {
+      throw std::invalid_argument("value_programs: as many as materials");
+    }
+  }
+  tables.world_values = values_program(world_values, tables.value_count);
   tables.slot_begin.assign(begin.begin(), begin.end());
   tables.slots.assign(entries.begin(), entries.end());
   scene.set_tables(std::move(tables));
@@ -270,6 +302,13 @@ void bind_scene(py::module_& module) {
       },
       py::arg("triangles"), py::arg("expected_rays"),
       "The builder, LINEAR or SAH, with which build and rays together take the least time.");
+  py::class_<CameraDesc, std::shared_ptr<CameraDesc>>(
+      module, "Camera", "A camera that a Session takes in place of its scene's.")
+      .def(py::init(&make_camera_desc), py::arg("kind"), py::arg("matrix"), py::arg("clip_start"),
+           py::arg("clip_end"), py::arg("width"), py::arg("height"), py::kw_only(),
+           py::arg("lens") = py::none(), py::arg("panorama") = py::none(),
+           py::arg("stereo") = py::none(), py::arg("shutter") = py::none(),
+           py::arg("motion") = py::none(), "As Scene.set_camera.");
   module.def("content_tags", &tags_of, py::arg("array"), py::arg("threads") = 0,
              "32 bytes for each 4096 of the array's, to be hashed on: two different blocks share "
              "them with probability 2^-128. Of use within this process alone.");
@@ -291,18 +330,22 @@ void bind_scene(py::module_& module) {
            "flags, material_slots (which list of set_tables): uint32 [N]. motion: the same at an "
            "odd number of even times from the opening of the shutter to the closing, float64 "
            "[N, 2k + 1, 4, 4], of which matrices are the middle ones exactly.")
-      .def("set_tables", &set_tables, py::kw_only(), py::arg("object_pass_index"),
-           py::arg("object_mattes"), py::arg("object_terminators"), py::arg("material_pass_index"),
-           py::arg("material_mattes"), py::arg("slot_begin"), py::arg("slots"),
-           py::arg("material_values") = py::none(), py::arg("object_colors") = py::none(),
-           "What passes tell of objects and materials. Pass indices and Cryptomatte ids: float32 "
-           "[N], object_mattes [N, 2] of object and asset. object_terminators: float32 [N, 2], "
-           "Blender's shadow_terminator_geometry_offset and the shading one, 0 to 1. List l of "
-           "material slots is "
-           "slots[slot_begin[l]:slot_begin[l + 1]], indices of materials; uint32 both. "
-           "material_values: float32 [N, K], what holds all over a material; the pass \"Material "
-           "Value f n\" shows n (1 to 4) of them from number f on. object_colors: float32 [N, 4], "
-           "Blender's Object.color, for nodes that ask for it.")
+      .def(
+          "set_tables", &set_tables, py::kw_only(), py::arg("object_pass_index"),
+          py::arg("object_mattes"), py::arg("object_terminators"), py::arg("material_pass_index"),
+          py::arg("material_mattes"), py::arg("slot_begin"), py::arg("slots"),
+          py::arg("material_values") = py::none(), py::arg("object_colors") = py::none(),
+          py::arg("value_programs") = py::none(), py::arg("world_values") = py::none(),
+          "What passes tell of objects and materials. Pass indices and Cryptomatte ids: float32 "
+          "[N], object_mattes [N, 2] of object and asset. object_terminators: float32 [N, 2], "
+          "Blender's shadow_terminator_geometry_offset and the shading one, 0 to 1. List l of "
+          "material slots is "
+          "slots[slot_begin[l]:slot_begin[l + 1]], indices of materials; uint32 both. "
+          "material_values: float32 [N, K], what holds all over a material; the pass \"Material "
+          "Value f n\" shows n (1 to 4) of them from number f on. object_colors: float32 [N, 4], "
+          "Blender's Object.color, for nodes that ask for it. value_programs: a list of N, None or "
+          "the Program whose K outputs are what varies over a material; world_values: likewise "
+          "that of the world, where there is nothing else.")
       .def("set_surfaces", &set_surfaces, py::arg("surfaces"),
            py::arg("instance_random") = py::none(),
            "Of each material of set_tables (SurfaceProgram to camera rays, SurfaceProgram to rays "

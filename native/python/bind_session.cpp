@@ -26,6 +26,8 @@ constexpr Choice<EnvironmentSampling> kEnvironmentSamplings[] = {
     {"COSINE", EnvironmentSampling::kCosine},
     {"ENVIRONMENT", EnvironmentSampling::kEnvironment},
     {"PRODUCT", EnvironmentSampling::kProduct}};
+constexpr Choice<FastGiMethod> kFastGiMethods[] = {{"REPLACE", FastGiMethod::kReplace},
+                                                   {"ADD", FastGiMethod::kAdd}};
 constexpr Choice<PixelFilter> kPixelFilters[] = {{"BLACKMAN_HARRIS", PixelFilter::kBlackmanHarris},
                                                  {"GAUSSIAN", PixelFilter::kGaussian},
                                                  {"BOX", PixelFilter::kBox}};
@@ -53,10 +55,13 @@ std::shared_ptr<Settings> make_settings(
     float adaptive_threshold, std::uint32_t adaptive_min_samples, float time_limit,
     float ao_distance, const std::string& ao_sampling, const std::array<float, 3>& clay_color,
     std::uint32_t bounces, float sample_clamp_direct, float sample_clamp_indirect,
+    std::uint32_t world_max_bounces, bool use_fast_gi, const std::string& fast_gi_method,
+    std::uint32_t fast_gi_bounces, float fast_gi_distance, float fast_gi_factor,
     const std::string& environment_sampling, const std::string& pixel_filter, float filter_width,
     bool use_progressive, bool film_transparent, float mist_start, float mist_depth,
     const std::string& mist_falloff, std::uint32_t threads, std::uint32_t tile_size,
-    const std::optional<Region>& region, const std::vector<std::string>& passes) {
+    const std::optional<Region>& region, const std::vector<std::string>& passes,
+    bool guides_light) {
   auto s = std::make_shared<Settings>();
   s->method = parse("method", method, kMethods);
   s->samples = samples;
@@ -73,6 +78,12 @@ std::shared_ptr<Settings> make_settings(
   s->bounces = bounces;
   s->sample_clamp_direct = sample_clamp_direct;
   s->sample_clamp_indirect = sample_clamp_indirect;
+  s->world_max_bounces = world_max_bounces;
+  s->use_fast_gi = use_fast_gi;
+  s->fast_gi_method = parse("fast_gi_method", fast_gi_method, kFastGiMethods);
+  s->fast_gi_bounces = fast_gi_bounces;
+  s->fast_gi_distance = fast_gi_distance;
+  s->fast_gi_factor = fast_gi_factor;
   s->environment_sampling =
       parse("environment_sampling", environment_sampling, kEnvironmentSamplings);
   s->pixel_filter = parse("pixel_filter", pixel_filter, kPixelFilters);
@@ -87,6 +98,7 @@ std::shared_ptr<Settings> make_settings(
   s->has_region = region.has_value();
   if (region) s->region = {(*region)[0], (*region)[1], (*region)[2], (*region)[3]};
   s->passes = passes;
+  s->guides_light = guides_light;
   return s;
 }
 
@@ -169,14 +181,20 @@ void bind_settings(py::module_& module) {
            py::arg("ao_sampling") = "COSINE",
            py::arg("clay_color") = std::array<float, 3>{0.8f, 0.8f, 0.8f}, py::arg("bounces") = 0,
            py::arg("sample_clamp_direct") = 0.0f, py::arg("sample_clamp_indirect") = 10.0f,
+           py::arg("world_max_bounces") = d.world_max_bounces, py::arg("use_fast_gi") = false,
+           py::arg("fast_gi_method") = "REPLACE", py::arg("fast_gi_bounces") = d.fast_gi_bounces,
+           py::arg("fast_gi_distance") = d.fast_gi_distance,
+           py::arg("fast_gi_factor") = d.fast_gi_factor,
            py::arg("environment_sampling") = "PRODUCT", py::arg("pixel_filter") = "BLACKMAN_HARRIS",
            py::arg("filter_width") = d.filter_width, py::arg("use_progressive") = d.use_progressive,
            py::arg("film_transparent") = d.film_transparent, py::arg("mist_start") = d.mist_start,
            py::arg("mist_depth") = d.mist_depth, py::arg("mist_falloff") = "QUADRATIC",
            py::arg("threads") = d.threads, py::arg("tile_size") = d.tile_size,
            py::arg("region") = std::optional<Region>(), py::arg("passes") = d.passes,
+           py::arg("guides_light") = d.guides_light,
            "region: (x_min, y_min, x_max, y_max) in full-frame pixels, half open, row 0 at the "
-           "bottom; None is the whole frame. threads 0: one a core. ValueError for a name that is "
+           "bottom; None is the whole frame. threads 0: one a core. guides_light: whether the "
+           "parts of the sky that surfaces see are measured first. ValueError for a name that is "
            "not known; ranges are checked when a Session starts.");
 }
 
@@ -189,12 +207,15 @@ void bind_session(py::module_& module) {
   bind_settings(module);
   py::class_<Session, std::shared_ptr<Session>>(
       module, "Session", "Renders a committed scene on threads of its own; it starts at once.")
-      .def(py::init([](std::shared_ptr<Scene> scene, const Settings& settings) {
+      .def(py::init([](std::shared_ptr<Scene> scene, const Settings& settings,
+                       const std::shared_ptr<CameraDesc>& camera) {
              const py::gil_scoped_release release;
-             return new Session(std::move(scene), settings);
+             return new Session(std::move(scene), settings,
+                                camera ? std::optional(*camera) : std::nullopt);
            }),
-           py::arg("scene"), py::arg("settings"),
-           "ValueError: the scene is not committed or has no camera, a setting is out of range.")
+           py::arg("scene"), py::arg("settings"), py::arg("camera") = py::none(),
+           "camera: a Camera in place of the scene's own. ValueError: the scene is not committed "
+           "or has no camera, a setting is out of range.")
       .def("wait", &Session::wait, py::arg("timeout"), py::call_guard<py::gil_scoped_release>(),
            "True when the render is over (done, cancelled or failed) within `timeout` seconds.")
       .def("cancel", &Session::cancel, "Ends the render within 100 ms; what is done stays.")

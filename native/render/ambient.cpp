@@ -7,7 +7,9 @@ bool is_limited(const RenderContext& context) {
   return context.ao_distance < Ray{}.t_max;
 }
 
-RenderContext ambient_context(const RenderContext& given, float distance) {
+}  // namespace
+
+RenderContext ambient_context(const RenderContext& given, float distance, std::uint32_t vertex) {
   RenderContext context = given;
   context.method = Method::kAmbientOcclusion;
   context.sky = constant_environment(Vec3(1.0f));
@@ -19,13 +21,11 @@ RenderContext ambient_context(const RenderContext& given, float distance) {
   context.light_distance = distance;
   context.light_mask = kMaskShadow;
   context.surface_mask = 0;
-  context.light_dimension = vertex_dimension(0, kVertexAmbient);
+  context.light_dimension = vertex_dimension(vertex, kVertexAmbient);
   context.lifts_rays = context.has_terminators;
   context.cuts_cosines = context.bends_round = false;
   return context;
 }
-
-}  // namespace
 
 AmbientPasses passes_of_light_rays(const RenderContext& context) {
   AmbientPasses passes;

@@ -18,6 +18,10 @@ struct AmbientCast {
   AmbientPasses passes;
 };
 
+/// By which rays for ambient occlusion are drawn at a vertex, as many as light rays.
+RenderContext ambient_context(const RenderContext& context, float distance,
+                              std::uint32_t vertex = 0);
+
 /// The passes that the light rays themselves fill: they are drawn for ambient occlusion anyway.
 AmbientPasses passes_of_light_rays(const RenderContext& context);
 

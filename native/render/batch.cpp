@@ -24,6 +24,7 @@ BatchIntegrator::BatchIntegrator(const RenderContext& context)
       of_light_(passes_of_light_rays(context)),
       light_caster_(context),
       lamp_caster_(context),
+      added_light_(context, 0),
       has_catchers_(context.passes.keeps(Quantity::kCatcherLight)),
       bounces_(context),
       bounces_alone_(alone_context(context)) {
@@ -33,8 +34,8 @@ BatchIntegrator::BatchIntegrator(const RenderContext& context)
 }
 
 std::uint64_t BatchIntegrator::ray_count() const {
-  std::uint64_t count =
-      camera_ray_count_ + light_caster_.ray_count() + lamp_caster_.ray_count() + bounce_ray_count();
+  std::uint64_t count = camera_ray_count_ + light_caster_.ray_count() + lamp_caster_.ray_count() +
+                        added_light_.ray_count() + bounce_ray_count();
   for (const Ambient& ambient : ambient_) count += ambient.caster.ray_count();
   return count;
 }
@@ -132,6 +133,7 @@ void BatchIntegrator::shade() {
     put_surface(context_, hits_[path], rays[path], surfaces_.normal(s), surfaces_.depth(s), shading,
                 paths_[path].sample, row(path));
   }
+  values_.put(context_, rays, hits_.data(), [this](std::uint32_t i) { return row(i); });
 }
 
 bool BatchIntegrator::light(const Cancel& cancel) {
@@ -152,7 +154,7 @@ bool BatchIntegrator::light(const Cancel& cancel) {
     });
   }
   if (cancel.raised()) return false;
-  if (context_.lamps.count > 0 && !find_lamp_light(cancel)) return false;
+  if (has_more_light(context_) && !find_more_light(cancel)) return false;
   add_direct_light();
   if (context_.bounces > 0 && !bounce(cancel)) return false;
   if (context_.passes.size() > 0) finish_passes();
@@ -168,7 +170,7 @@ void BatchIntegrator::add_direct_light() {
     const Shading shading = context_.has_materials ? surfaces_.shading(s) : Shading{};
     Vec3& radiance = results_[path].radiance;
     Vec3 light = radiance / light_rays;
-    if (context_.lamps.count > 0) light += lamp_light_[s];
+    if (has_more_light(context_)) light += more_light_[s];
     radiance = direct_light(context_, shading, light);
     if (!has_catchers_ || !is_catcher(context_, hits_[path].instance)) continue;
     Vec3 alone = layout.get(row(path), Quantity::kCatcherLight) / light_rays;
@@ -222,21 +224,23 @@ void BatchIntegrator::light_block(std::uint32_t begin, std::uint32_t end) {
       });
 }
 
-bool BatchIntegrator::find_lamp_light(const Cancel& cancel) {
-  lamp_light_.assign(surfaces_.size(), Vec3(0.0f));
+bool BatchIntegrator::find_more_light(const Cancel& cancel) {
+  more_light_.assign(surfaces_.size(), Vec3(0.0f));
   lamp_light_alone_.assign(has_catchers_ ? surfaces_.size() : 0, Vec3(0.0f));
+  const bool lamps = context_.lamps.count > 0;
   const std::uint32_t size = lamp_caster_.block_size();
-  for (std::uint32_t begin = 0; begin < surfaces_.size(); begin += size) {
+  for (std::uint32_t begin = 0; lamps && begin < surfaces_.size(); begin += size) {
     if (cancel.raised()) return false;
     const std::uint32_t end = std::min(surfaces_.size(), begin + size);
-    lamp_caster_.cast(surfaces_, begin, end, 0, lamp_light_.data());
+    lamp_caster_.cast(surfaces_, begin, end, 0, more_light_.data());
     if (!has_catchers_) continue;
     lamp_caster_.cast_alone(
         surfaces_, begin, end,
         [&](std::uint32_t s) { return is_catcher(context_, hits_[surfaces_.path(s)].instance); },
         lamp_light_alone_.data());
   }
-  return true;
+  return !context_.fast_gi.adds ||
+         added_light_.add(context_, 0, surfaces_, cancel, more_light_.data());
 }
 
 void BatchIntegrator::ambient_block(const AmbientPasses& passes, LightCaster& caster,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "parallel/cancel.h"
+#include "render/added_light.h"
 #include "render/ambient.h"
 #include "render/bounce_tracer.h"
 #include "render/cells.h"
@@ -11,6 +12,7 @@
 #include "render/film.h"
 #include "render/lamp_caster.h"
 #include "render/light_caster.h"
+#include "render/material_values.h"
 #include "render/ray_batch.h"
 #include "render/shade.h"
 #include "render/surface_batch.h"
@@ -68,8 +70,8 @@ class BatchIntegrator {
                      std::uint32_t end);
   void add_direct_light();
   bool bounce(const Cancel& cancel);
-  /// What lamps bring to the surfaces in view.
-  bool find_lamp_light(const Cancel& cancel);
+  /// What lamps bring to the surfaces in view, and what Fast GI adds.
+  bool find_more_light(const Cancel& cancel);
   void finish_passes();
   float* row(std::uint32_t path) { return rows_.data() + context_.passes.size() * path; }
 
@@ -81,12 +83,14 @@ class BatchIntegrator {
   std::vector<Hit> hits_;
   SurfaceBatch surfaces_;
   BatchShader shader_;
+  MaterialValues values_;
   std::vector<PixelSample> results_;
   std::vector<float> rows_;  // [paths][context_.passes.size()]
   AmbientPasses of_light_;   // passes that light rays fill
   LightCaster light_caster_;
   LampCaster lamp_caster_;
-  std::vector<Vec3> lamp_light_, lamp_light_alone_;  // of each surface; of those that are catchers
+  AddedLight added_light_;
+  std::vector<Vec3> more_light_, lamp_light_alone_;  // of each surface; of those that are catchers
   struct Ambient {
     AmbientPasses passes;
     LightCaster caster;

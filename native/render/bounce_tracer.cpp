@@ -9,7 +9,8 @@ namespace komorebi {
 BounceTracer::BounceTracer(const RenderContext& context)
     : context_(context),
       caster_(later_context(context, 1)),
-      lamp_caster_(later_context(context, 1)) {}
+      lamp_caster_(later_context(context, 1)),
+      added_light_(later_context(context, 1), 1) {}
 
 void BounceTracer::clear() {
   next_rays_.clear();
@@ -18,7 +19,7 @@ void BounceTracer::clear() {
 
 void BounceTracer::begin(const SurfaceBatch& surfaces, std::uint32_t surface, std::uint32_t path,
                          std::uint32_t pixel_seed, std::uint32_t sample) {
-  leave(0, surfaces, surface, {path, pixel_seed, sample, surfaces.albedo(surface)});
+  leave(0, surfaces, surface, {path, pixel_seed, sample, surfaces.albedo(surface), Vec3(0.0f)});
 }
 
 void BounceTracer::leave(std::uint32_t vertex, const SurfaceBatch& surfaces, std::uint32_t surface,
@@ -34,6 +35,7 @@ void BounceTracer::leave(std::uint32_t vertex, const SurfaceBatch& surfaces, std
   const Sampler sampler(state.pixel_seed);
   Ray ray;
   if (!scatter(context_, vertex, point, sampler, state.sample, state.throughput, ray)) return;
+  state.normal = point.normal;
   next_rays_.push(ray);
   next_states_.push_back(state);
 }
@@ -64,40 +66,62 @@ bool BounceTracer::find_surfaces(std::uint32_t vertex, const Cancel& cancel) {
   surfaces_.fill(context_, hits_.data(), rays);
   shader_.shade(context_, vertex, hits_.data(), rays, kLaterLightSamples, surfaces_);
   light_.assign(surfaces_.size(), Vec3(0.0f));
-  caster_.set_light_dimension(vertex_dimension(vertex, kVertexLightDirection));
+  const RenderContext context = later_context(context_, vertex);
+  caster_.set_context(context);
+  const bool shares = shares_light(context_, vertex);
   const std::uint32_t size = caster_.block_size();
   for (std::uint32_t begin = 0; begin < surfaces_.size(); begin += size) {
     if (cancel.raised()) return false;
     caster_.cast(surfaces_, begin, std::min(surfaces_.size(), begin + size),
-                 [&](std::uint32_t s, const Vec3&, const Vec3& contribution, bool visible) {
-                   if (visible) light_[s] += contribution;
+                 [&](std::uint32_t s, const Vec3& to, const Vec3& contribution, bool visible) {
+                   if (!visible) return;
+                   light_[s] += shares ? contribution * light_share(s, to) : contribution;
                  });
   }
-  return find_lamp_light(vertex, cancel);
+  return find_more_light(context, vertex, cancel);
 }
 
-bool BounceTracer::find_lamp_light(std::uint32_t vertex, const Cancel& cancel) {
-  if (context_.lamps.count == 0) return true;
-  lamp_light_.assign(surfaces_.size(), Vec3(0.0f));
+bool BounceTracer::find_more_light(const RenderContext& context, std::uint32_t vertex,
+                                   const Cancel& cancel) {
+  if (!has_more_light(context)) return true;
+  more_light_.assign(surfaces_.size(), Vec3(0.0f));
+  const bool lamps = context.lamps.count > 0;
   const std::uint32_t size = lamp_caster_.block_size();
-  for (std::uint32_t begin = 0; begin < surfaces_.size(); begin += size) {
+  for (std::uint32_t begin = 0; lamps && begin < surfaces_.size(); begin += size) {
     if (cancel.raised()) return false;
     lamp_caster_.cast(surfaces_, begin, std::min(surfaces_.size(), begin + size), vertex,
-                      lamp_light_.data());
+                      more_light_.data());
   }
-  return true;
+  return !context.fast_gi.adds ||
+         added_light_.add(context, vertex, surfaces_, cancel, more_light_.data());
 }
 
-bool BounceTracer::trace(const Cancel& cancel,
-                         FunctionRef<void(std::uint32_t path, const Vec3& light)> visit) {
+float BounceTracer::light_share(std::uint32_t surface, const Vec3& direction) const {
+  return light_ray_share(context_, surfaces_.normal(surface), surfaces_.geometric_normal(surface),
+                         direction);
+}
+
+/// Of the rays that have met nothing.
+void BounceTracer::add_sky(const Visit& visit) const {
+  const RaySpan rays = rays_.span();
+  for (std::uint32_t i = 0; i < rays.count; ++i) {
+    if (hits_[i].valid()) continue;
+    const State& state = states_[i];
+    const Vec3 direction(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]);
+    visit(state.path, scattered_sky(context_, state.throughput, state.normal, direction));
+  }
+}
+
+bool BounceTracer::trace(const Cancel& cancel, Visit visit) {
   for (std::uint32_t vertex = 1; !next_states_.empty(); ++vertex) {
     take_next();
     if (!find_surfaces(vertex, cancel)) return false;
+    if (shares_light(context_, vertex - 1)) add_sky(visit);
     for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
       State state = states_[surfaces_.path(s)];
       const Shading shading = surfaces_.shading(s);
       Vec3 light = light_[s] / static_cast<float>(kLaterLightSamples);
-      if (context_.lamps.count > 0) light += lamp_light_[s];
+      if (has_more_light(context_)) light += more_light_[s];
       visit(state.path, indirect_light(context_, vertex, state.throughput, shading, light));
       if (vertex == context_.bounces) continue;
       state.throughput *= shading.albedo;

@@ -4,6 +4,7 @@
 
 #include "parallel/cancel.h"
 #include "parallel/function_ref.h"
+#include "render/added_light.h"
 #include "render/lamp_caster.h"
 #include "render/light_caster.h"
 #include "render/ray_batch.h"
@@ -24,12 +25,13 @@ class BounceTracer {
   /// Lets a path go on from a surface in view, shaded; `path` is the caller's word for it.
   void begin(const SurfaceBatch& surfaces, std::uint32_t surface, std::uint32_t path,
              std::uint32_t pixel_seed, std::uint32_t sample);
+  using Visit = FunctionRef<void(std::uint32_t path, const Vec3& light)>;
   /// Follows all that was begun; visit(path, light) is told what each vertex brings to the pixel, a
   /// path's in their order. False when cancelled on the way.
-  bool trace(const Cancel& cancel, FunctionRef<void(std::uint32_t path, const Vec3& light)> visit);
+  bool trace(const Cancel& cancel, Visit visit);
 
   std::uint64_t ray_count() const {
-    return ray_count_ + caster_.ray_count() + lamp_caster_.ray_count();
+    return ray_count_ + caster_.ray_count() + lamp_caster_.ray_count() + added_light_.ray_count();
   }
 
  private:
@@ -37,17 +39,22 @@ class BounceTracer {
   struct State {
     std::uint32_t path, pixel_seed, sample;
     Vec3 throughput;
+    Vec3 normal;  // of the surface that its ray has left
   };
 
   void leave(std::uint32_t vertex, const SurfaceBatch& surfaces, std::uint32_t surface,
              State state);
   void take_next();
-  bool find_lamp_light(std::uint32_t vertex, const Cancel& cancel);
+  /// Of lamps, and what Fast GI adds.
+  bool find_more_light(const RenderContext& context, std::uint32_t vertex, const Cancel& cancel);
+  float light_share(std::uint32_t surface, const Vec3& direction) const;
+  void add_sky(const Visit& visit) const;
   bool find_surfaces(std::uint32_t vertex, const Cancel& cancel);
 
   RenderContext context_;
   LightCaster caster_;
   LampCaster lamp_caster_;
+  AddedLight added_light_;
   RayBatch rays_, next_rays_;
   std::vector<State> states_, next_states_;  // of each ray
   RayOrder order_;
@@ -55,7 +62,7 @@ class BounceTracer {
   SurfaceBatch surfaces_;
   BatchShader shader_;
   std::vector<Vec3> light_;       // of the light rays of each surface
-  std::vector<Vec3> lamp_light_;  // likewise of those to lamps
+  std::vector<Vec3> more_light_;  // beside these, as a mean
   std::uint64_t ray_count_ = 0;
 };
 

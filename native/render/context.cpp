@@ -77,7 +77,9 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.method = settings.method;
   context.ao_sampling = settings.ao_sampling;
   context.clay_albedo = settings.clay_color;
-  context.bounces = settings.bounces;
+  context.world_max_bounces = settings.world_max_bounces;
+  context.fast_gi = make_fast_gi(settings);
+  context.bounces = std::min(settings.bounces, context.fast_gi.last_vertex);
   take_materials(scene.tables(), ao, context);
   context.albedo = lit_albedo(context, 0);
   context.clamp_direct = clamp_limit(settings.sample_clamp_direct);
@@ -87,14 +89,15 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.light_mask = light_mask(scene, settings.method);
   context.cosine_share = cosine_share(settings.environment_sampling, scene.world_is_uniform());
   const auto& map = scene.world_environment();
-  if (!ao && map && scene.splits_light_rays()) {
-    context.surface_mask = kMaskDiffuse;
+  if (!ao && map) {
     context.sky_flux = static_cast<float>(scene.world_strength() * map->mean_flux());
+    if (scene.splits_light_rays()) context.surface_mask = kMaskDiffuse;
   }
   if (!ao && map && !map->black() &&
       settings.environment_sampling == EnvironmentSampling::kProduct) {
     context.product = map->product_table().view();
   }
+  context.shares_light = !scene.splits_light_rays() && !is_dark(context);
   context.transparent = settings.film_transparent;
   context.seed = settings.seed;
   context.light_samples = resolved_light_samples(settings);
@@ -117,7 +120,7 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.cuts_cosines = !ao && tables.cuts_cosines();
   context.lifts_lamp_rays = lifts && context.lamps.count > 0;
   context.has_terminators = context.lifts_rays || context.lifts_lamp_rays || context.cuts_cosines ||
-                            (lifts && context.passes.keeps_ambient());
+                            (lifts && (context.passes.keeps_ambient() || context.fast_gi.adds));
   context.bends_round = context.lifts_rays && !ao;
   context.origin = scene.origin();
   context.frame_width = static_cast<float>(scene.camera_desc().width);
@@ -126,6 +129,7 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.mist_start = settings.mist_start;
   context.mist_depth = settings.mist_depth;
   context.mist_falloff = settings.mist_falloff;
+  if (context.fast_gi.last_vertex == 0) end_in_ambient(context);
   return context;
 }
 

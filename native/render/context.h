@@ -6,6 +6,7 @@
 #include "core/lamp_choice.h"
 #include "core/sampler.h"
 #include "core/scene_view.h"
+#include "render/fast_gi.h"
 #include "render/passes.h"
 #include "render/scene.h"
 #include "render/settings.h"
@@ -31,6 +32,7 @@ struct RenderContext {
   bool indirect_emission = false;  ///< whether what paths find shines on the surfaces before it
   /// Most that a vertex brings, as the sum of the channels: in view, and after a bounce.
   float clamp_direct = Ray{}.t_max, clamp_indirect = Ray{}.t_max;
+  FastGi fast_gi;
   float light_distance = 0.0f;  ///< largest t of a light ray
   float cosine_share = 1.0f;  ///< share of light rays drawn from the cosine; the rest from the map
   std::uint32_t light_mask = kMaskShadow;     ///< of light rays
@@ -41,6 +43,13 @@ struct RenderContext {
   /// others, and the map's mean_flux with its strength. Else 0.
   std::uint32_t surface_mask = 0;
   float sky_flux = 0.0f;
+  /// What counts of the light that they find, and of that which the others find; their largest t.
+  float surface_factor = 1.0f, map_factor = 1.0f;
+  float surface_distance = Ray{}.t_max;
+  std::uint32_t world_max_bounces = 0;  ///< Settings
+  /// Whether scattered rays see what light rays see, so that both can bring the sky's light
+  /// (scatter.h).
+  bool shares_light = false;
   /// Whether rays may leave above coarse smooth surfaces, and then go below their own triangle, or
   /// cosines be cut (core/terminator.h). Points have a terminator where any of their rays heeds it.
   bool has_terminators = false, lifts_rays = false, bends_round = false, cuts_cosines = false;
@@ -50,6 +59,7 @@ struct RenderContext {
   bool transparent = false;
   std::uint32_t seed = 0;
   std::uint32_t light_samples = 1;
+  std::uint32_t lamp_samples = 0;  ///< rays to lamps from a surface; 0: by light_samples
 
   FilmSteps film_steps;  ///< for the Vector pass
   StepsView steps;
@@ -68,6 +78,11 @@ struct RenderContext {
 /// Whether no light comes from the sky, so that no rays need to go there.
 inline bool is_dark(const RenderContext& context) {
   return context.sky.width == 0 && context.sky.constant == Vec3(0.0f);
+}
+
+/// Whether surfaces get light beside the world's.
+inline bool has_more_light(const RenderContext& context) {
+  return context.lamps.count > 0 || context.fast_gi.adds;
 }
 
 /// An upper bound of the radiance that the world sends along any ray, and about the most that lamps

@@ -5,6 +5,7 @@
 
 #include "bvh/choose_builder.h"
 #include "io/array_file.h"
+#include "render/dump_programs.h"
 
 namespace komorebi {
 namespace {
@@ -47,11 +48,21 @@ void put_round(ArrayFile& file, const std::string& key, const Mesh& mesh) {
     file.put<float>(key + "motion_points", others, {sets - 1, count, 4});
   }
   put_steps(file, key, mesh, count);
+  put_attributes(file, key, mesh);
   if (!are_curves) return;
   const std::vector<std::int32_t> offsets = round.curve_offsets();
   file.put<std::int32_t>(key + "curve_offsets", offsets, {offsets.size()});
   file.put_value<std::uint32_t>(key + "shape", static_cast<std::uint32_t>(round.shape));
   file.put_value<std::uint32_t>(key + "subdivisions", round.subdivisions);
+  const std::uint16_t* const slots = mesh.view().tri2material;
+  if (slots == nullptr) return;
+  std::vector<std::int32_t> curve2material;
+  for (std::size_t c = 0, segment = 0; c + 1 < offsets.size(); ++c) {
+    const auto keys = static_cast<std::size_t>(offsets[c + 1] - offsets[c]);
+    curve2material.push_back(keys > 1 ? slots[segment] : 0);
+    segment += keys > 0 ? keys - 1 : 0;
+  }
+  file.put<std::int32_t>(key + "curve2material", curve2material, {curve2material.size()});
 }
 
 void put_mesh(ArrayFile& file, const std::string& key, const Mesh& mesh) {
@@ -94,6 +105,7 @@ void put_mesh(ArrayFile& file, const std::string& key, const Mesh& mesh) {
     std::vector<std::int32_t> slots(v.tri2material, v.tri2material + triangles);
     file.put<std::int32_t>(key + "tri2material", slots, {triangles});
   }
+  put_attributes(file, key, mesh);
 }
 
 /// Positions in object space from those of the mesh's own; exact, see MeshGeometry.
@@ -136,10 +148,13 @@ std::shared_ptr<const Mesh> get_round(const ArrayFile& file, const std::string& 
   const DumpedPoints others(file, key + "motion_points", origin);
   const std::vector<float> steps = get_any_positions(file, key + "step_positions", origin);
   const RoundMotion motion{others.xyz, others.radius, steps};
+  const DumpedAttributes attributes(file, key);
   constexpr Builder builder = Builder::kSah;  // as the add-on builds them
   const std::string name = file.get_text(key + "name");
   if (!are_curves) {
-    return Mesh::build(PointsInput{name, rest.xyz, rest.radius, motion}, builder, pool, cancel);
+    PointsInput input{name, rest.xyz, rest.radius, motion};
+    input.attributes = attributes.inputs();
+    return Mesh::build(input, builder, pool, cancel);
   }
   const auto offsets = file.get<std::int32_t>(key + "curve_offsets");
   const auto shape = file.get_value<std::uint32_t>(key + "shape");
@@ -152,6 +167,10 @@ std::shared_ptr<const Mesh> get_round(const ArrayFile& file, const std::string& 
   input.shape = static_cast<CurveShape>(shape);
   input.subdivisions = file.get_value<std::uint32_t>(key + "subdivisions");
   input.motion = motion;
+  input.attributes = attributes.inputs();
+  std::vector<std::int32_t> materials;
+  if (file.has(key + "curve2material")) materials = file.get<std::int32_t>(key + "curve2material");
+  input.curve2material = materials;
   return Mesh::build(input, builder, pool, cancel);
 }
 
@@ -194,12 +213,14 @@ std::shared_ptr<const Mesh> get_mesh(const ArrayFile& file, const std::string& k
   input.step_positions = step_positions;
   input.face2smooth = smooth;
   input.face2material = materials;
+  const DumpedAttributes attributes(file, key);
+  input.attributes = attributes.inputs();
   return Mesh::build(input, choose_builder(face_offsets.size() - 1, expected_rays), pool, cancel);
 }
 
 void put_instances(ArrayFile& file, const std::vector<InstanceInput>& instances) {
   const std::size_t n = instances.size();
-  std::vector<std::uint32_t> mesh(n), object(n), mask(n), flags(n);
+  std::vector<std::uint32_t> mesh(n), object(n), mask(n), flags(n), slots(n);
   std::vector<double> matrices(16 * n);
   for (std::size_t i = 0; i < n; ++i) {
     const InstanceInput& instance = instances[i];
@@ -207,12 +228,14 @@ void put_instances(ArrayFile& file, const std::vector<InstanceInput>& instances)
     object[i] = instance.object_index;
     mask[i] = instance.mask;
     flags[i] = instance.flags;
+    slots[i] = instance.material_slots;
     std::copy_n(glm::value_ptr(instance.world_from_object), 16, &matrices[16 * i]);
   }
   file.put<std::uint32_t>("instance/mesh", mesh, {n});
   file.put<std::uint32_t>("instance/object_index", object, {n});
   file.put<std::uint32_t>("instance/mask", mask, {n});
   file.put<std::uint32_t>("instance/flags", flags, {n});
+  file.put<std::uint32_t>("instance/material_slots", slots, {n});
   file.put<double>("instance/world_from_object", matrices, {n, 4, 4});
 }
 
@@ -259,39 +282,14 @@ void get_instances(const ArrayFile& file, Scene& scene) {
   const auto object = file.get<std::uint32_t>("instance/object_index", n);
   const auto mask = file.get<std::uint32_t>("instance/mask", n);
   const auto flags = file.get<std::uint32_t>("instance/flags", n);
+  const auto slots = file.get<std::uint32_t>("instance/material_slots", n);
   const auto matrices = file.get<double>("instance/world_from_object", 16 * n);
   std::vector<InstanceInput> instances(n);
   for (std::size_t i = 0; i < n; ++i) {
-    instances[i] = {mesh[i], glm::make_mat4(&matrices[16 * i]), object[i], mask[i], flags[i]};
+    instances[i] = {mesh[i], glm::make_mat4(&matrices[16 * i]), object[i], mask[i], flags[i],
+                    slots[i]};
   }
   add_instances(file, instances, scene);
-}
-
-/// Of the tables, what changes the picture.
-void put_terminators(ArrayFile& file, const SceneTables& tables) {
-  if (!tables.lifts_rays() && !tables.cuts_cosines()) return;
-  std::vector<float> pairs;
-  for (const ObjectInfo& object : tables.objects) {
-    pairs.insert(pairs.end(), {object.terminator_cutoff, object.terminator_frequency});
-  }
-  put_rows<float>(file, "object/terminator", pairs, 2);
-}
-
-void get_terminators(const ArrayFile& file, Scene& scene) {
-  if (!file.has("object/terminator")) return;
-  const auto pairs = file.get<float>("object/terminator");
-  SceneTables tables;
-  for (std::size_t i = 0; i + 1 < pairs.size(); i += 2) {
-    const float cutoff = pairs[i], frequency = pairs[i + 1];
-    if (!(cutoff >= 0.0f && cutoff <= 1.0f && frequency >= 1.0f && frequency <= 2.0f)) {
-      throw std::runtime_error("the scene's array \"object/terminator\" has values out of range");
-    }
-    ObjectInfo object;
-    object.terminator_cutoff = cutoff;
-    object.terminator_frequency = frequency;
-    tables.objects.push_back(object);
-  }
-  scene.set_tables(std::move(tables));
 }
 
 void put_world(ArrayFile& file, const Scene& scene) {
@@ -341,7 +339,8 @@ void write_dump(const std::string& path, const Scene& scene, const Settings& set
   }
   put_instances(file, scene.inputs());
   put_poses(file, scene);
-  put_terminators(file, scene.tables());
+  ProgramWriter programs(file);
+  put_tables(file, scene, programs);
   put_world(file, scene);
   put_lamps(file, scene.lamp_inputs());
   put_camera(file, scene.camera_desc());
@@ -366,7 +365,8 @@ DumpedRender read_dump(const std::string& path, ThreadPool& pool, const Cancel& 
     dumped.scene->add_mesh(get_mesh(file, key, expected_rays, pool, cancel));
   }
   get_instances(file, *dumped.scene);
-  get_terminators(file, *dumped.scene);
+  ProgramReader programs(file, pool);
+  get_tables(file, *dumped.scene, programs);
   get_world(file, *dumped.scene);
   get_lamps(file, *dumped.scene);
   return dumped;

@@ -18,12 +18,16 @@ struct DumpedRender {
 ///
 ///     mesh/N/name, vtx2xyz, origin, tri2vtx, corner2normal*, tri2smooth*, tri2material*,
 ///         motion_positions*, motion_corner2normal*  (MeshInput)
-///     mesh/N/name, origin, keys, curve_offsets, shape, subdivisions  (curves)
+///     mesh/N/name, origin, keys, curve_offsets, shape, subdivisions, curve2material*  (curves)
 ///     mesh/N/name, origin, points  (points)
-///     instance/mesh, world_from_object, object_index, mask, flags
+///     mesh/N/attribute/M/name, domain, rows  (AttributeInput)
+///     instance/mesh, world_from_object, object_index, mask, flags, material_slots
 ///     instance/motion/instance*, pose_count*, poses*  of those that move (add_moving_instances)
-///     object/terminator*  cutoff and frequency of ObjectInfo, by object_index
+///     object/info*  terminator's cutoff and frequency, pass_index, color, alpha (ObjectInfo)
+///     material/surface*, lobes*, pass_index*, slot_begin*, slots*, instance/random*  (Material)
 ///     world/color  or  world/texels, world/strength, world/texture_from_world
+///     world/program*, world/program_max*  (Scene::set_world_program)
+///     program/N/…, texture/N/…  (dump_programs.h)
 ///     lamp/kind*, flags*, scales_by_cosine*, radiance*, world_from_lamp*, numbers*  (LampInput,
 ///         for_each_lamp_number)
 ///     camera/kind, clip_from_world or world_from_camera, clip_start, clip_end, resolution,
@@ -39,8 +43,24 @@ void write_dump(const std::string& path, const Scene& scene, const Settings& set
 /// Throws std::runtime_error or std::invalid_argument with a sentence naming what is wrong.
 DumpedRender read_dump(const std::string& path, ThreadPool& pool, const Cancel& cancel);
 
-/// The settings', the camera's and the lamps' part alone.
+/// Parts of it alone.
 class ArrayFile;
+class ProgramWriter;
+class ProgramReader;
+void put_attributes(ArrayFile& file, const std::string& mesh_key, const Mesh& mesh);
+/// Owns what is read from a dump.
+class DumpedAttributes {
+ public:
+  DumpedAttributes(const ArrayFile& file, const std::string& mesh_key);
+  const std::vector<AttributeInput>& inputs() const { return inputs_; }
+
+ private:
+  std::vector<std::vector<float>> rows_;
+  std::vector<AttributeInput> inputs_;
+};
+/// Tables of objects and materials, surfaces, and the world's program.
+void put_tables(ArrayFile& file, const Scene& scene, ProgramWriter& programs);
+void get_tables(const ArrayFile& file, Scene& scene, ProgramReader& programs);
 void put_camera(ArrayFile& file, const CameraDesc& camera);
 CameraDesc get_camera(const ArrayFile& file);
 void put_lamps(ArrayFile& file, const std::vector<LampInput>& lamps);

@@ -25,6 +25,12 @@ void for_each_setting(SettingsLike& s, const Visit& visit) {
   visit("bounces", s.bounces);
   visit("sample_clamp_direct", s.sample_clamp_direct);
   visit("sample_clamp_indirect", s.sample_clamp_indirect);
+  visit("world_max_bounces", s.world_max_bounces);
+  visit("use_fast_gi", s.use_fast_gi);
+  visit("fast_gi_method", s.fast_gi_method);
+  visit("fast_gi_bounces", s.fast_gi_bounces);
+  visit("fast_gi_distance", s.fast_gi_distance);
+  visit("fast_gi_factor", s.fast_gi_factor);
   visit("environment_sampling", s.environment_sampling);
   visit("pixel_filter", s.pixel_filter);
   visit("filter_width", s.filter_width);
@@ -46,6 +52,9 @@ constexpr std::uint32_t last_value(Method) {
   return 1;
 }
 constexpr std::uint32_t last_value(AoSampling) {
+  return 1;
+}
+constexpr std::uint32_t last_value(FastGiMethod) {
   return 1;
 }
 constexpr std::uint32_t last_value(EnvironmentSampling) {

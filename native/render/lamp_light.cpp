@@ -20,6 +20,7 @@ void lift(const Terminator& end, float share, const LampSample& drawn, const Vec
 
 std::uint32_t lamp_rays(const RenderContext& context) {
   if (context.lamps.count == 0) return 0;
+  if (context.lamp_samples > 0) return context.lamp_samples;
   return is_dark(context) ? context.light_samples : (context.light_samples + 1) / 2;
 }
 
@@ -28,8 +29,8 @@ LampRay draw_lamp_ray(const RenderContext& context, const LampPoint& point, cons
   const std::uint32_t rays = lamp_rays(context);
   const Bits2 bits = sampler.bits_2d(vertex_dimension(vertex, kVertexLamp), sample * rays + j);
   LampRay ray;
-  const LampChoice choice =
-      choose_lamp(context.lamps, point.origin, point.normal, bits.x * 2.3283064365386963e-10);
+  const LampChoice choice = choose_lamp(context.lamps, point.origin, point.normal, vertex,
+                                        bits.x * 2.3283064365386963e-10);
   if (choice.lamp == kNone || !(choice.probability > 0.0f)) return ray;
   const Lamp& lamp = context.lamps.lamps[choice.lamp];
   const LampSample drawn =

@@ -26,7 +26,7 @@ struct LampRay {
 };
 
 /// Rays to lamps that each camera sample casts from a surface: half as many as to the sky, or as
-/// many in its place where it is black.
+/// many in its place where it is black; after a bounce kLaterLampSamples.
 std::uint32_t lamp_rays(const RenderContext& context);
 
 /// Draws lamp ray j of a surface point of camera sample `sample`, at path vertex `vertex`.

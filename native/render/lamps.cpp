@@ -63,6 +63,11 @@ Lamp make_lamp(const LampInput& input, const Vec3d& origin) {
   lamp.radiance = Vec3(input.radiance);
   lamp.position = Vec3(Vec3d(input.world_from_lamp[3]) - origin);
   lamp.radius = static_cast<float>(input.radius);
+  lamp.max_bounces = static_cast<std::uint32_t>(input.max_bounces);
+  if (!is_distant(lamp.kind)) {
+    lamp.falloff.power = static_cast<std::uint32_t>(input.falloff_power);
+    lamp.falloff.smooth = static_cast<float>(input.falloff_smooth);
+  }
   if (is_distant(lamp.kind)) {
     lamp.direction = Vec3(unit(axes[2]));
     const double half = std::sin(0.25 * input.angle);
@@ -81,6 +86,15 @@ Lamp make_lamp(const LampInput& input, const Vec3d& origin) {
     set_spot(input, lamp);
   }
   return lamp;
+}
+
+/// The most that is left of a point's light from a distance on.
+double most_falling(const Falloff& falloff, double distance) {
+  const auto smooth = static_cast<double>(falloff.smooth);
+  if (falloff.power == 2) return 1.0;
+  if (falloff.power == 0) return 1.0 / (distance * distance + smooth);
+  const double at = std::max(distance, std::sqrt(smooth));
+  return at / (at * at + smooth);
 }
 
 }  // namespace
@@ -122,6 +136,12 @@ void check_lamp(const LampInput& lamp) {
   }
   require(lamp.spot_angle >= 0.0 && lamp.spot_angle <= kPi + 1e-6,
           "its spot's angle must be in [0, π]");
+  require(lamp.falloff_power == 0.0 || lamp.falloff_power == 1.0 || lamp.falloff_power == 2.0,
+          "its falloff's power must be 0, 1 or 2");
+  require(lamp.falloff_smooth >= 0.0 && lamp.falloff_smooth <= 1e30,
+          "its falloff's smooth must be finite and not negative");
+  require(lamp.max_bounces >= 0.0 && lamp.max_bounces <= kMostBounces,
+          "its max_bounces must be 0 to 1024");
   require(lamp.spot_blend >= 0.0 && lamp.spot_blend <= 1.0, "its spot's blend must be in [0, 1]");
 }
 
@@ -144,12 +164,13 @@ LampTable::LampTable(const std::vector<LampInput>& inputs, const Vec3d& origin) 
 /// Halves the lamps where they are spread most; all of it depends on them and their order alone.
 void LampTable::grow(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
   Aabb box;
+  LampNode made;
   float power = 0.0f;
   for (std::uint32_t i = begin; i < end; ++i) {
     box = united(box, {lamps_[i].position, lamps_[i].position});
     power += power_of(lamps_[i]);
+    made.max_bounces = std::max(made.max_bounces, lamps_[i].max_bounces);
   }
-  LampNode made;
   made.centre = centre(box);
   made.power = power;
   for (std::uint32_t i = begin; i < end; ++i) {
@@ -182,16 +203,18 @@ LampsView LampTable::view() const {
           static_cast<std::uint32_t>(lamps_.size()), single_count_};
 }
 
-float LampTable::max_radiance(float distance) const {
+float LampTable::max_radiance(float distance, float length) const {
   double sum = 0.0;
   for (const Lamp& lamp : lamps_) {
     auto most = static_cast<double>(power_of(lamp));
     if (!is_distant(lamp.kind)) {
-      const double there = most / (double{distance} * double{distance});
+      const double there = most * most_falling(lamp.falloff, double{distance});
       // Of a lamp with a size no more comes than fills the hemisphere.
       const double all_over =
           4.0 * static_cast<double>(max_abs(lamp.radiance)) *
-          static_cast<double>(is_area(lamp.kind) ? spread_share(lamp, 1.0f) : 1.0f);
+          static_cast<double>(is_area(lamp.kind) ? spread_share(lamp, 1.0f) : 1.0f) *
+          static_cast<double>(
+              lamp.falloff.at(std::sqrt(glm::dot(lamp.position, lamp.position)) + length));
       most = lamp.kind == LampKind::kPoint ? there : std::min(there, all_over);
     }
     sum += most;

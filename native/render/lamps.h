@@ -20,6 +20,8 @@ struct LampInput {
   double spread = kPi;                ///< radians across, of an area; 0: parallel rays
   double spot_angle = 0.0;            ///< radians across; 0: no spot
   double spot_blend = 0.0;            ///< 0 to 1
+  double falloff_power = 0.0, falloff_smooth = 0.0;  ///< Falloff
+  double max_bounces = kMostBounces;
   bool spot_scales_by_cosine = false;
   std::uint32_t flags = 0;  ///< LampFlag
 };
@@ -35,6 +37,9 @@ void for_each_lamp_number(Lamp& lamp, const Visit& visit) {
   visit("spread", lamp.spread);
   visit("spot_angle", lamp.spot_angle);
   visit("spot_blend", lamp.spot_blend);
+  visit("falloff_power", lamp.falloff_power);
+  visit("falloff_smooth", lamp.falloff_smooth);
+  visit("max_bounces", lamp.max_bounces);
 }
 
 /// Throws std::invalid_argument with a sentence that names the lamp if a number is not finite or
@@ -51,8 +56,8 @@ class LampTable {
 
   LampsView view() const;
   /// About the most that one camera sample brings by lamps to a white surface, where they are no
-  /// nearer than `distance`: what the film's units are chosen by.
-  float max_radiance(float distance) const;
+  /// nearer than `distance`, in a scene of this length: what the film's units are chosen by.
+  float max_radiance(float distance, float length) const;
   std::size_t byte_count() const;
 
  private:

@@ -79,6 +79,18 @@ LightSample sample_light(const RenderContext& context, const SurfacePoint& point
   return sample_ambient(context, point, Vec2(to_unit_float(bits.x), to_unit_float(bits.y)));
 }
 
+float light_pdf(const RenderContext& context, const Vec3& normal, const Vec3& direction) {
+  if (context.product.bins > 0) {
+    return product_pdf(context.sky, context.product, normal, direction);
+  }
+  const float of_cosine = max_of(glm::dot(direction, normal), 0.0f) * kInvPi;
+  if (context.method == Method::kWorldLight) {
+    const float share = context.cosine_share;
+    return share * of_cosine + (1.0f - share) * environment_pdf(context.sky, direction);
+  }
+  return context.ao_sampling == AoSampling::kCosine ? of_cosine : kInvTwoPi;
+}
+
 Terminator terminator(const RenderContext& context, const Hit& hit, float time,
                       const Vec3& geometric_normal) {
   Terminator result;

@@ -19,6 +19,9 @@ struct LightSample {
 LightSample sample_light(const RenderContext& context, const SurfacePoint& point,
                          const Sampler& sampler, std::uint32_t index);
 
+/// The density, by solid angle, of sample_light drawing a direction for a surface of this normal.
+float light_pdf(const RenderContext& context, const Vec3& normal, const Vec3& direction);
+
 /// The shadow terminator of a point at its ray's time, on the side that light comes from.
 Terminator terminator(const RenderContext& context, const Hit& hit, float time,
                       const Vec3& geometric_normal);
@@ -38,13 +41,21 @@ float surface_share(const RenderContext& context, const Vec3& normal, const Vec3
 /// surface_mask.
 inline float arriving_share(const RenderContext& context, const Vec3& normal, const Vec3& direction,
                             bool light_passes, bool surface_passes) {
-  if (light_passes == surface_passes) return light_passes ? 1.0f : 0.0f;
+  const float of_map = light_passes ? context.map_factor : 0.0f;
+  const float of_surface = surface_passes ? context.surface_factor : 0.0f;
+  if (of_map == of_surface) return of_map;
   const float share = surface_share(context, normal, direction);
-  return surface_passes ? share : 1.0f - share;
+  return (1.0f - share) * of_map + share * of_surface;
 }
 
 /// The shadow ray of a light sample.
 Ray light_ray(const RenderContext& context, const SurfacePoint& point, const Hit& hit,
               const Vec3& direction, float time);
+
+/// What Fast GI adds to a surface's light, of the sum over its rays by added_light_context.
+inline Vec3 added_light(const RenderContext& context, float seen) {
+  return context.albedo *
+         (context.fast_gi.factor * seen / static_cast<float>(context.light_samples));
+}
 
 }  // namespace komorebi

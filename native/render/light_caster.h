@@ -21,8 +21,8 @@ class LightCaster {
   explicit LightCaster(const RenderContext& context)
       : context_(context), block_(context.light_samples), state_(block_.size()) {}
 
-  /// By which rays are drawn from now on, in place of the context's.
-  void set_light_dimension(std::uint32_t dimension) { context_.light_dimension = dimension; }
+  /// By which rays are drawn from now on, as many as before.
+  void set_context(const RenderContext& context) { context_ = context; }
   std::uint32_t block_size() const { return block_.capacity(); }
   std::uint64_t ray_count() const { return rays_; }
   /// Rays of cast(), and those of them that something blocked.
@@ -38,7 +38,7 @@ class LightCaster {
     terminate_rays(surfaces, begin, end);
     if (context_.scene.filter.exists()) find_path_keys(surfaces, begin, end);
     const std::uint64_t before = rays_;
-    tally_.blocked += trace(surfaces, begin, end, context_.light_mask, kDrawn, kBlocked);
+    tally_.blocked += trace(surfaces, begin, end, light_rays(), kDrawn, kBlocked);
     tally_.cast += rays_ - before;
     if (context_.surface_mask == 0) {
       for_each_drawn(end - begin, [&](std::uint32_t p, std::uint32_t place) {
@@ -47,7 +47,7 @@ class LightCaster {
       });
       return;
     }
-    trace(surfaces, begin, end, context_.surface_mask, kDrawn, kSurfaceBlocked);
+    trace(surfaces, begin, end, surface_rays(), kDrawn, kSurfaceBlocked);
     for_each_drawn(end - begin, [&](std::uint32_t p, std::uint32_t place) {
       const float share = arriving(surfaces, begin + p, place, kBlocked, kSurfaceBlocked);
       visit(begin + p, block_.direction(place), block_.contribution(place) * share, share > 0.0f);
@@ -65,11 +65,10 @@ class LightCaster {
         state_[place] |= kAgain;
       }
     });
-    trace(surfaces, begin, end, context_.light_mask << kMaskCatcherShift, kAgain, kBlockedAgain);
+    trace(surfaces, begin, end, alone(light_rays()), kAgain, kBlockedAgain);
     const bool splits = context_.surface_mask != 0;
     if (splits) {
-      trace(surfaces, begin, end, context_.surface_mask << kMaskCatcherShift, kAgain,
-            kSurfaceBlockedAgain);
+      trace(surfaces, begin, end, alone(surface_rays()), kAgain, kSurfaceBlockedAgain);
     }
     for_each_drawn(end - begin, [&](std::uint32_t p, std::uint32_t place) {
       if (!is_catcher(begin + p)) return;
@@ -96,6 +95,15 @@ class LightCaster {
     kSurfaceBlocked = 64,
     kSurfaceBlockedAgain = 128
   };
+
+  /// What blocks rays: things of a mask, up to a distance.
+  struct Obstacles {
+    std::uint32_t mask;
+    float distance;
+  };
+  Obstacles light_rays() const { return {context_.light_mask, context_.light_distance}; }
+  Obstacles surface_rays() const { return {context_.surface_mask, context_.surface_distance}; }
+  static Obstacles alone(Obstacles o) { return {o.mask << kMaskCatcherShift, o.distance}; }
 
   /// arriving_share of a ray, given the bits that say what blocks it.
   float arriving(const SurfaceBatch& surfaces, std::uint32_t surface, std::uint32_t place,
@@ -163,7 +171,7 @@ class LightCaster {
   /// Traces the rays that have the bit `wanted`, and sets `blocked` in those that hit something;
   /// returns how many.
   std::uint64_t trace(const SurfaceBatch& surfaces, std::uint32_t begin, std::uint32_t end,
-                      std::uint32_t mask, std::uint8_t wanted, std::uint8_t blocked) {
+                      Obstacles obstacles, std::uint8_t wanted, std::uint8_t blocked) {
     points_.clear(block_.size());
     for (std::uint32_t s = begin; s < end; ++s) {
       points_.begin(surfaces, s);
@@ -186,8 +194,8 @@ class LightCaster {
     }
     RayBundles bundles{};
     points_.lend(bundles);
-    block_.lend(bundles, context_.light_distance);
-    bundles.mask = mask;
+    block_.lend(bundles, obstacles.distance);
+    bundles.mask = obstacles.mask;
     bundles.path_key = path_keys_.data();
     const std::uint32_t rays = bundles.ray_count();
     bits_.resize((rays + 31) / 32);

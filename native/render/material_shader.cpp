@@ -69,15 +69,6 @@ Shading choose(const SurfaceProgram& surface, const Outputs& at, float u, Chosen
 
 }  // namespace
 
-void MaterialShader::run(const RenderContext& context, const Program& program,
-                         const ShadeTask* tasks, std::uint32_t count) {
-  const std::size_t outputs = program.output_count();
-  if (results_.size() < outputs * kLanes) results_.resize(outputs * kLanes);
-  rows_.resize(outputs);
-  for (std::size_t i = 0; i < outputs; ++i) rows_[i] = &results_[i * kLanes];
-  program.run(points_.fill(context, program, tasks, count), scratch_, rows_.data());
-}
-
 void MaterialShader::shade(const RenderContext& context, std::span<ShadeTask> tasks,
                            Shading* shadings) {
   for (std::size_t begin = 0; begin < tasks.size();) {
@@ -92,7 +83,8 @@ void MaterialShader::shade(const RenderContext& context, std::span<ShadeTask> ta
       begin = end;
       continue;
     }
-    run(context, *surface.program, &tasks[begin], static_cast<std::uint32_t>(end - begin));
+    float* const* rows =
+        run_.run(context, *surface.program, &tasks[begin], static_cast<std::uint32_t>(end - begin));
     for (std::size_t i = begin; i < end; ++i) {
       ShadeTask& task = tasks[i];
       const bool draws = surface.lobes.size() > 1;
@@ -100,7 +92,7 @@ void MaterialShader::shade(const RenderContext& context, std::span<ShadeTask> ta
       const float u =
           draws ? sampler.sample_1d(vertex_dimension(vertex, kVertexLobe), task.sample) : 0.0f;
       ChosenLobe lobe{task.point.normal, false};
-      shadings[i] = choose(surface, {rows_.data(), static_cast<std::uint32_t>(i - begin)}, u, lobe);
+      shadings[i] = choose(surface, {rows, static_cast<std::uint32_t>(i - begin)}, u, lobe);
       task.point.normal = lobe.transmits ? -lobe.normal : lobe.normal;
       if (lobe.transmits) task.point.geometric_normal = -task.point.geometric_normal;
     }
@@ -109,11 +101,10 @@ void MaterialShader::shade(const RenderContext& context, std::span<ShadeTask> ta
 }
 
 void MaterialShader::clear_shares(const RenderContext& context, const Program& program,
-                                  std::uint32_t first, const ShadeTask* tasks, std::uint32_t count,
-                                  float* shares) {
-  run(context, program, tasks, count);
+                                  const ShadeTask* tasks, std::uint32_t count, float* shares) {
+  float* const* rows = run_.run(context, program, tasks, count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    shares[i] = clear_share(Outputs{rows_.data(), i}.vector(first));
+    shares[i] = clear_share(Outputs{rows, i}.vector(0));
   }
 }
 

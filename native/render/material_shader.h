@@ -3,7 +3,7 @@
 #include <span>
 
 #include "render/material.h"
-#include "render/material_points.h"
+#include "render/material_run.h"
 
 namespace komorebi {
 
@@ -15,18 +15,12 @@ class MaterialShader {
   void shade(const RenderContext& context, std::span<ShadeTask> tasks, Shading* shadings);
 
   /// How much of the rays that meet some hits goes straight through: what a program says of at most
-  /// Program::kLanes points. Its outputs from `first` on are a transparency.
-  void clear_shares(const RenderContext& context, const Program& program, std::uint32_t first,
-                    const ShadeTask* tasks, std::uint32_t count, float* shares);
+  /// Program::kLanes points. Its first outputs are a transparency.
+  void clear_shares(const RenderContext& context, const Program& program, const ShadeTask* tasks,
+                    std::uint32_t count, float* shares);
 
  private:
-  void run(const RenderContext& context, const Program& program, const ShadeTask* tasks,
-           std::uint32_t count);
-
-  MaterialPoints points_;
-  Program::Scratch scratch_;
-  std::vector<float> results_;  // [outputs][kLanes]
-  std::vector<float*> rows_;
+  MaterialRun run_;
 };
 
 }  // namespace komorebi

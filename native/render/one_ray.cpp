@@ -4,6 +4,7 @@
 #include "core/path_key.h"
 #include "render/ambient.h"
 #include "render/light.h"
+#include "render/material_values.h"
 #include "render/one_lamp_ray.h"
 #include "render/pass_row.h"
 #include "render/scatter.h"
@@ -39,6 +40,7 @@ PixelSample missed(const RenderContext& context, const Vec3& direction, float t_
   if (has_ray(t_max)) {
     result = background(context, direction);
     put_environment(context, direction, row);
+    put_world_values(context, direction, row);
   } else {
     result.alpha = 1.0f;
   }
@@ -74,6 +76,7 @@ void for_each_light_ray(const RenderContext& context, const SurfacePoint& point,
     bool visible = !occluded_scalar(context.scene, ray);
     if (context.surface_mask != 0) {
       ray.mask = context.surface_mask;
+      ray.t_max = context.surface_distance;
       const float arriving = arriving_share(context, point.normal, drawn.direction, visible,
                                             !occluded_scalar(context.scene, ray));
       drawn.contribution *= arriving;
@@ -83,15 +86,34 @@ void for_each_light_ray(const RenderContext& context, const SurfacePoint& point,
   }
 }
 
-/// The mean over a point's light rays.
+/// The mean over a point's light rays; their part where scattered rays bring some of it.
 Vec3 mean_light(const RenderContext& context, const SurfacePoint& point, const Hit& hit,
-                const Sampler& sampler, std::uint32_t sample, float time) {
+                const Sampler& sampler, std::uint32_t sample, float time, bool shares = false) {
   Vec3 light(0.0f);
-  for_each_light_ray(context, point, hit, sampler, sample, time,
-                     [&](const LightSample& drawn, bool visible) {
-                       if (visible) light += drawn.contribution;
-                     });
+  for_each_light_ray(
+      context, point, hit, sampler, sample, time, [&](const LightSample& drawn, bool visible) {
+        if (!visible) return;
+        if (!shares) {
+          light += drawn.contribution;
+          return;
+        }
+        light += drawn.contribution *
+                 light_ray_share(context, point.normal, point.geometric_normal, drawn.direction);
+      });
   return light / static_cast<float>(context.light_samples);
+}
+
+/// What lamps bring to a point, and what Fast GI adds.
+Vec3 more_light(const RenderContext& context, const SurfacePoint& point, const Hit& hit,
+                const Sampler& sampler, std::uint32_t vertex, std::uint32_t sample, float time) {
+  Vec3 light = lamp_light(context, point, hit, sampler, vertex, sample, time);
+  if (!context.fast_gi.adds) return light;
+  float seen = 0.0f;
+  for_each_light_ray(added_light_context(context, vertex), point, hit, sampler, sample, time,
+                     [&](const LightSample& drawn, bool visible) {
+                       if (visible) seen += drawn.contribution.x;
+                     });
+  return light + added_light(context, seen);
 }
 
 /// Adds what comes to the surface in view from others, vertex by vertex.
@@ -106,14 +128,19 @@ void add_bounces(const RenderContext& context, MaterialShader& shader, SurfacePo
     Ray ray;
     if (!scatter(context, vertex, from, sampler, sample, throughput, ray)) return;
     hit = intersect_scalar(context.scene, ray);
-    if (!hit.valid()) return;
+    if (!hit.valid()) {
+      if (!shares_light(context, vertex)) return;
+      radiance += scattered_sky(context, throughput, from.normal, ray.direction);
+      return;
+    }
     point = surface_point(context.scene, hit, ray);
     const Shading shading =
         shade_surface(context, shader, hit, ray, sampler.pixel_seed, sample, vertex + 1, point);
     const RenderContext later = later_context(context, vertex + 1);
-    Vec3 light = mean_light(later, point, hit, sampler, sample, time);
-    if (later.lamps.count > 0) {
-      light += lamp_light(later, point, hit, sampler, vertex + 1, sample, time);
+    Vec3 light =
+        mean_light(later, point, hit, sampler, sample, time, shares_light(context, vertex + 1));
+    if (has_more_light(later)) {
+      light += more_light(later, point, hit, sampler, vertex + 1, sample, time);
     }
     radiance += indirect_light(context, vertex + 1, throughput, shading, light);
     throughput *= shading.albedo;
@@ -126,7 +153,7 @@ Vec3 light_alone(const RenderContext& given, MaterialShader& shader, const Surfa
                  std::uint32_t sample, float time) {
   const RenderContext context = alone_context(given);
   Vec3 light = mean_light(context, point, hit, sampler, sample, time);
-  if (context.lamps.count > 0) light += lamp_light(context, point, hit, sampler, 0, sample, time);
+  if (has_more_light(context)) light += more_light(context, point, hit, sampler, 0, sample, time);
   Vec3 radiance = direct_light(context, shading, light);
   add_bounces(context, shader, point, hit, shading.albedo, sampler, sample, time, radiance);
   return radiance;
@@ -144,6 +171,7 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
   if (is_holdout(context, hit)) {
     const PixelSample hole;
     put_values(context, hit, row);
+    MaterialValues().put_one(context, hit, ray, row);
     put_matte(layout, hole, row);
     return hole;
   }
@@ -154,6 +182,7 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
       shade_surface(context, shader, hit, ray, sampler.pixel_seed, sample, 0, point);
   put_surface(context, hit, ray, point.normal, camera_depth(context.camera, point.position),
               shading, sample, row);
+  MaterialValues().put_one(context, hit, ray, row);
   PixelSample result;
   result.alpha = 1.0f - shading.holdout;
   const AmbientPasses of_light = passes_of_light_rays(context);
@@ -164,8 +193,8 @@ PixelSample render_sample(const RenderContext& context, std::uint32_t x, std::ui
                        add_ambient(layout, of_light, drawn.direction, drawn.contribution.x, row);
                      });
   Vec3 light = result.radiance / static_cast<float>(context.light_samples);
-  if (context.lamps.count > 0) {
-    light += lamp_light(context, point, hit, sampler, 0, sample, ray.time);
+  if (has_more_light(context)) {
+    light += more_light(context, point, hit, sampler, 0, sample, ray.time);
   }
   result.radiance = direct_light(context, shading, light);
   add_bounces(context, shader, point, hit, shading.albedo, sampler, sample, ray.time,

@@ -81,7 +81,11 @@ void put_values(const RenderContext& context, const Hit& hit, float* row) {
   if (material == kNone) return;
   const SceneTables& tables = *context.tables;
   std::copy_n(&tables.values[std::size_t{material} * tables.value_count], layout.values,
-              row + layout.place[static_cast<std::size_t>(Quantity::kMaterialValue)]);
+              row_of_values(layout, row));
+}
+
+float* row_of_values(const PassLayout& layout, float* row) {
+  return row + layout.place[static_cast<std::size_t>(Quantity::kMaterialValue)];
 }
 
 void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, const Vec3& normal,
@@ -118,6 +122,12 @@ void put_surface(const RenderContext& context, const Hit& hit, const Ray& ray, c
   if (layout.keeps(Quantity::kDenoisingNormal)) {
     layout.put(row, Quantity::kDenoisingNormal, Vec3(Vec3d(normal) * camera_axes(context.camera)));
   }
+}
+
+void put_world_values(const RenderContext& context, const Vec3& direction, float* row) {
+  const Program* program = context.tables->world_values.get();
+  if (context.passes.values == 0 || program == nullptr) return;
+  world_values(*program, direction, context.passes.values, row_of_values(context.passes, row));
 }
 
 void put_environment(const RenderContext& context, const Vec3& direction, float* row) {

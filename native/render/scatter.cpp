@@ -5,9 +5,19 @@
 #include "core/path_key.h"
 #include "core/terminator.h"
 #include "core/warp.h"
+#include "render/light.h"
 #include "render/shade.h"
 
 namespace komorebi {
+namespace {
+
+float scattered_share(const RenderContext& context, const Vec3& normal, const Vec3& direction) {
+  const float scattered = max_of(glm::dot(direction, normal), 0.0f) * kInvPi;
+  const float both = scattered + light_pdf(context, normal, direction);
+  return both > 0.0f ? scattered / both : 0.0f;
+}
+
+}  // namespace
 
 bool scatter(const RenderContext& context, std::uint32_t vertex, const ScatterPoint& point,
              const Sampler& sampler, std::uint32_t sample, Vec3& throughput, Ray& ray) {
@@ -39,11 +49,31 @@ bool scatter(const RenderContext& context, std::uint32_t vertex, const ScatterPo
   return true;
 }
 
+float light_ray_share(const RenderContext& context, const Vec3& normal,
+                      const Vec3& geometric_normal, const Vec3& direction) {
+  // A lifted ray may go where none is scattered to.
+  if (!(glm::dot(direction, geometric_normal) > 0.0f)) return 1.0f;
+  return 1.0f - scattered_share(context, normal, direction);
+}
+
+Vec3 scattered_sky(const RenderContext& context, const Vec3& throughput, const Vec3& normal,
+                   const Vec3& direction) {
+  const float share = scattered_share(context, normal, direction);
+  const Vec3 sky = environment_radiance(context.sky, direction);
+  return clamp_light(throughput * (share * sky), context.clamp_indirect);
+}
+
 RenderContext later_context(const RenderContext& given, std::uint32_t vertex) {
   RenderContext context = given;
   context.albedo = lit_albedo(given, vertex);
   context.light_samples = kLaterLightSamples;
+  context.lamp_samples = kLaterLampSamples;
   context.light_dimension = vertex_dimension(vertex, kVertexLightDirection);
+  if (vertex == given.fast_gi.last_vertex) end_in_ambient(context);
+  if (vertex > given.world_max_bounces && context.sky.width > 0) {
+    context.surface_mask = context.scatter_mask;
+    context.map_factor = 0.0f;
+  }
   return context;
 }
 
@@ -53,6 +83,7 @@ RenderContext alone_context(const RenderContext& given) {
   context.surface_mask <<= kMaskCatcherShift;
   context.scatter_mask <<= kMaskCatcherShift;
   context.lamp_mask <<= kMaskCatcherShift;
+  context.fast_gi.adds = false;  // as in Cycles
   return context;
 }
 

@@ -354,7 +354,7 @@ void Scene::commit(ThreadPool& pool, const Cancel& cancel, bool keep_inputs) {
   view_.motion_group_count = static_cast<std::uint32_t>(motion_.groups.size());
   view_.moves = !motion_.groups.empty();
   for (const auto& mesh : traced_meshes_) view_.moves = view_.moves || mesh->deforms();
-  if (material_filter_) material_filter_->bind(*this);
+  if (material_filter_) material_filter_->bind(*this, pool, cancel);
   if (!is_still()) return;
   for (const auto& mesh : traced_meshes_) mesh_steps_.push_back(mesh->step_positions());
 }
@@ -380,6 +380,7 @@ std::size_t Scene::byte_count() const {
   for (const auto& mesh : traced_meshes_.empty() ? meshes_ : traced_meshes_) {
     sum += mesh->byte_count();
   }
+  if (material_filter_) sum += material_filter_->byte_count();
   return sum + (environment_ ? environment_->byte_count() : 0);
 }
 

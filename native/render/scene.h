@@ -102,7 +102,7 @@ class Scene {
   /// About the most that one camera sample brings by lamps: LampTable::max_radiance where they are
   /// nearer than a thousandth of the scene's length.
   float max_lamp_radiance() const {
-    return lamps_.max_radiance(static_cast<float>(1e-3 * length_));
+    return lamps_.max_radiance(static_cast<float>(1e-3 * length_), static_cast<float>(length_));
   }
 
   const Vec3d& origin() const { return origin_; }
@@ -129,6 +129,7 @@ class Scene {
   double world_strength() const { return strength_; }
   const Mat3d& texture_from_world() const { return texture_from_world_; }
   const Program* world_program() const { return world_program_.get(); }
+  float world_program_max() const { return world_program_max_; }
 
  private:
   void require_open() const;

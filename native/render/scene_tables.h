@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/vector.h"
@@ -26,6 +27,10 @@ struct MaterialInfo {
 
 /// What indices of a scene stand for. All may be empty: then nothing is known.
 struct SceneTables {
+  /// What varies may be anything, distances too: a film's numbers end beyond 32 times this, and
+  /// still have steps of 1e-5 or less.
+  static constexpr float kMostVarying = 32768.0f;
+
   std::vector<ObjectInfo> objects;      ///< of InstanceInput::object_index
   std::vector<MaterialInfo> materials;  ///< of the entries of `slots`
   /// List l of material slots is slots[slot_begin[l]] to slots[slot_begin[l + 1] − 1]; a face with
@@ -34,6 +39,10 @@ struct SceneTables {
   /// Numbers that hold all over a material, [materials][value_count]: what shader AOVs say.
   std::uint32_t value_count = 0;
   std::vector<float> values;
+  /// Of each material what varies over it, `value_count` outputs; null where `values` has it all.
+  /// Empty if there are none.
+  std::vector<std::shared_ptr<const Program>> value_programs;
+  std::shared_ptr<const Program> world_values;  ///< likewise what the world says; null: 0
 
   std::vector<Material> surfaces;  ///< of `materials`; empty: all are clay
   /// Of each instance a number from 0 to 1; empty if no surface asks for it.
@@ -67,8 +76,10 @@ struct SceneTables {
   MaterialInfo material(std::uint32_t index) const {
     return index < materials.size() ? materials[index] : MaterialInfo{};
   }
+  /// The largest of all values, as far as can be told without running programs.
   float max_value() const {
-    float most = 0.0f;
+    const bool varies = world_values || !value_programs.empty();
+    float most = varies ? kMostVarying : 0.0f;
     for (const float value : values) most = std::max(most, value < 0.0f ? -value : value);
     return most;
   }

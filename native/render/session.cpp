@@ -10,14 +10,14 @@
 namespace komorebi {
 namespace {
 
-const Scene& require_ready(const std::shared_ptr<const Scene>& scene) {
+const CameraDesc& chosen_camera(const std::shared_ptr<const Scene>& scene,
+                                const std::optional<CameraDesc>& camera) {
   if (!scene || !scene->committed()) throw std::invalid_argument("the scene is not committed");
-  if (!scene->has_camera()) throw std::invalid_argument("the scene has no camera");
-  return *scene;
+  if (!camera && !scene->has_camera()) throw std::invalid_argument("the scene has no camera");
+  return camera ? *camera : scene->camera_desc();
 }
 
-Settings checked(const Scene& scene, Settings settings) {
-  const CameraDesc& camera = scene.camera_desc();
+Settings checked(const CameraDesc& camera, Settings settings) {
   check_settings(settings, camera.width, camera.height);
   if (!settings.has_region) settings.region = {0, 0, camera.width, camera.height};
   return settings;
@@ -25,25 +25,33 @@ Settings checked(const Scene& scene, Settings settings) {
 
 /// Adaptive sampling decides on whole cells: those that a border cuts are rendered whole, and what
 /// lies outside is never read.
-Rect film_region(const Scene& scene, const Settings& settings) {
+Rect film_region(const CameraDesc& camera, const Settings& settings) {
   if (!settings.use_adaptive_sampling) return settings.region;
-  const CameraDesc& camera = scene.camera_desc();
   return whole_cells(settings.region, camera.width, camera.height);
 }
 
 }  // namespace
 
-Session::Session(std::shared_ptr<const Scene> scene, const Settings& settings)
+Session::Session(std::shared_ptr<const Scene> scene, const Settings& settings,
+                 const std::optional<CameraDesc>& camera)
     : scene_(std::move(scene)),
-      settings_(checked(require_ready(scene_), settings)),
+      camera_(chosen_camera(scene_, camera)),
+      settings_(checked(camera_, settings)),
       filter_(settings_.pixel_filter, settings_.filter_width),
       context_(make_context(*scene_, settings_, filter_.view())),
       light_samples_(context_.light_samples),
       rule_(settings_, context_.light_samples),
       pool_(settings_.threads),
-      film_(film_region(*scene_, settings_), settings_, max_radiance(*scene_, settings_),
+      film_(film_region(camera_, settings_), settings_, max_radiance(*scene_, settings_),
             scene_->has_catchers(), scene_->tables().max_value()),
       schedule_(make_tiles(film_.region(), settings_.tile_size, pool_.size()), settings_, rule_) {
+  if (camera) {
+    context_.camera = make_camera(camera_, scene_->origin());
+    camera_tables_ = CameraTables(camera_, scene_->origin(), context_.camera);
+    camera_tables_.lend(context_.camera);
+    context_.frame_width = static_cast<float>(camera_.width);
+    context_.frame_height = static_cast<float>(camera_.height);
+  }
   launch();
 }
 
@@ -102,7 +110,7 @@ void Session::run() {
 void Session::prepare() {
   if (prepared_) return;
   const Cancel& cancel = *cancel_;
-  guide_.prepare(*scene_, pool_, cancel, context_);
+  if (settings_.guides_light) guide_.prepare(*scene_, pool_, cancel, context_);
   const std::uint32_t chosen = settings_.light_samples > 0
                                    ? settings_.light_samples
                                    : choose_light_samples(context_, pool_, cancel);

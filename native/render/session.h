@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -40,8 +41,11 @@ struct Progress {
 /// at once; everything here may be called from any thread, and it may be destroyed at any time.
 class Session {
  public:
+  /// @param camera  in place of the scene's own, as a viewport looks from somewhere else all the
+  ///                time; nothing of the scene is built anew. Its motion is what the scene's has.
   /// Throws std::invalid_argument: scene not committed, no camera, a setting out of range.
-  Session(std::shared_ptr<const Scene> scene, const Settings& settings);
+  Session(std::shared_ptr<const Scene> scene, const Settings& settings,
+          const std::optional<CameraDesc>& camera = std::nullopt);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -76,9 +80,11 @@ class Session {
   void work();
 
   std::shared_ptr<const Scene> scene_;
+  CameraDesc camera_;
   Settings settings_;
   FilterTable filter_;
   RenderContext context_;
+  CameraTables camera_tables_;  // of a camera that is not the scene's
   SkyGuide guide_;                            // what context_ draws light rays by
   std::atomic<std::uint32_t> light_samples_;  // context_'s, for those who ask
   bool prepared_ = false;                     // context_ is as the whole render takes it

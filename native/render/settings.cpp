@@ -22,7 +22,9 @@ double bounce_gain(const Settings& s) {
   const double most = double{std::max(std::max(s.clay_color.x, s.clay_color.y), s.clay_color.z)};
   double gain = 1.0, share = 1.0;
   for (std::uint32_t i = 0; i < s.bounces; ++i) gain += share *= most;
-  return gain;
+  if (!s.use_fast_gi) return gain;
+  const double factor = double{s.fast_gi_factor};
+  return gain * (s.fast_gi_method == FastGiMethod::kAdd ? 1.0 + factor : std::max(1.0, factor));
 }
 
 void check_settings(const Settings& s, std::uint32_t width, std::uint32_t height) {
@@ -57,6 +59,12 @@ void check_settings(const Settings& s, std::uint32_t width, std::uint32_t height
       std::isfinite(s.sample_clamp_direct) && s.sample_clamp_direct >= 0.0f &&
           std::isfinite(s.sample_clamp_indirect) && s.sample_clamp_indirect >= 0.0f,
       "sample_clamp_direct and sample_clamp_indirect must be finite and not negative (0 is none)");
+  require(s.world_max_bounces <= kMaxBounces, "world_max_bounces must be 0 to 1024");
+  require(s.fast_gi_bounces <= kMaxBounces, "fast_gi_bounces must be 0 (never) to 1024");
+  require(std::isfinite(s.fast_gi_distance) && s.fast_gi_distance >= 0.0f,
+          "fast_gi_distance must be finite and not negative");
+  require(std::isfinite(s.fast_gi_factor) && s.fast_gi_factor >= 0.0f && s.fast_gi_factor <= 1e6f,
+          "fast_gi_factor must be 0 to 1000000");
   require(std::isfinite(s.filter_width) && s.filter_width >= 0.01f && s.filter_width <= 10.0f,
           "filter_width must be 0.01 to 10 pixels");
   require(std::isfinite(s.mist_start) && std::isfinite(s.mist_depth) && s.mist_depth >= 0.0f,

@@ -14,6 +14,7 @@ enum class AoSampling : std::uint32_t { kCosine, kUniform };
 /// How mist grows with distance: Blender's names.
 enum class MistFalloff : std::uint32_t { kQuadratic, kLinear, kInverseQuadratic };
 enum class EnvironmentSampling : std::uint32_t { kMis, kCosine, kEnvironment, kProduct };
+enum class FastGiMethod : std::uint32_t { kReplace, kAdd };
 
 /// A rectangle of full-frame pixels, half open; row 0 at the bottom.
 struct Rect {
@@ -50,7 +51,17 @@ struct Settings {
   /// Most that one vertex of a sample brings, as the mean of the channels; 0: anything. What the
   /// camera sees without and with bounces; names, meaning and values are those of Cycles.
   float sample_clamp_direct = 0.0f, sample_clamp_indirect = 10.0f;
+  /// After so many bounces light of a map counts by the surface's own rays alone, as in Cycles.
+  std::uint32_t world_max_bounces = 1024;
+  bool use_fast_gi = false;  ///< under World Light
+  FastGiMethod fast_gi_method = FastGiMethod::kReplace;
+  std::uint32_t fast_gi_bounces = 1;  ///< after which Replace sets in; 0: never
+  float fast_gi_distance = 10.0f;     ///< metres
+  float fast_gi_factor = 1.0f;        ///< of ambient light; 0: none of it
   EnvironmentSampling environment_sampling = EnvironmentSampling::kProduct;
+  /// Whether parts of the sky that surfaces see get the light rays, which is measured before the
+  /// first sample (SkyGuide). It is for pictures that are soon thrown away that it does not pay.
+  bool guides_light = true;
   PixelFilter pixel_filter = PixelFilter::kBlackmanHarris;
   float filter_width = 1.5f;    ///< pixels
   bool use_progressive = true;  ///< refine the whole frame, not one tile to its end

@@ -27,7 +27,9 @@ void SkyGuide::prepare(const Scene& scene, ThreadPool& pool, const Cancel& cance
     return;
   }
   SkyVisibility visibility;
-  if (!measure_sky_visibility(context, pool, cancel, visibility)) return;
+  RenderContext looked_by = context;
+  if (context.fast_gi.last_vertex != kNone) end_in_ambient(looked_by);  // sees most of the sky
+  if (!measure_sky_visibility(looked_by, pool, cancel, visibility)) return;
   done_ = true;
   if (ambient) {
     if (visibility.variance_left() > kWorthwhile) return;

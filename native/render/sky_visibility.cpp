@@ -86,6 +86,7 @@ bool measure_sky_visibility(const RenderContext& given, ThreadPool& pool, const 
     BundleBatch batch;
     std::vector<Hit> hits;
     std::vector<std::uint32_t> bits, more_bits;
+    std::vector<float> surface_t_max;
     std::vector<Vec3> normals;
     for (std::size_t row = begin; row < end && !cancel.raised(); ++row) {
       const std::uint32_t y = grid.y(static_cast<std::uint32_t>(row));
@@ -119,6 +120,8 @@ bool measure_sky_visibility(const RenderContext& given, ThreadPool& pool, const 
       if (context.surface_mask != 0) {  // light comes where either of Cycles' kinds of rays does
         RayBundles of_surface = bundles;
         of_surface.mask = context.surface_mask;
+        surface_t_max.assign(bundles.ray_count(), context.surface_distance);
+        of_surface.t_max = surface_t_max.data();
         more_bits.resize(bits.size());
         occluded(context.scene, of_surface, more_bits.data());
         for (std::size_t i = 0; i < bits.size(); ++i) bits[i] &= more_bits[i];

@@ -18,11 +18,11 @@ Vec3 shown(float r, float g, float b) {
   return Vec3(shown(r), shown(g), shown(b));
 }
 
-}  // namespace
+constexpr std::uint32_t kLanes = Program::kLanes;
 
-void run_world(const Program& program, Program::Scratch& scratch, const Vec3* directions,
-               std::uint32_t count, Vec3* radiance) {
-  constexpr std::uint32_t kLanes = Program::kLanes;
+/// Runs a world's program in at most kLanes directions; results: [outputs][kLanes].
+void run(const Program& program, Program::Scratch& scratch, const Vec3* directions,
+         std::uint32_t count, std::vector<float>& results) {
   float columns[6][kLanes];  // the direction, and the opposite one
   for (std::uint32_t i = 0; i < count; ++i) {
     for (int c = 0; c < 3; ++c) {
@@ -46,13 +46,29 @@ void run_world(const Program& program, Program::Scratch& scratch, const Vec3* di
   }
   std::vector<const float*> none(4 * program.attributes().size(), kZero);
   points.attribute = reinterpret_cast<const float* const(*)[4]>(none.data());
-  float results[kMostOutputs][kLanes];
-  float* out[kMostOutputs];
-  for (std::size_t i = 0; i < program.output_count(); ++i) out[i] = results[i];
-  program.run(points, scratch, out);
+  results.resize(program.output_count() * kLanes);
+  std::vector<float*> out;
+  for (std::size_t i = 0; i < program.output_count(); ++i) out.push_back(&results[i * kLanes]);
+  program.run(points, scratch, out.data());
+}
+
+}  // namespace
+
+void run_world(const Program& program, Program::Scratch& scratch, const Vec3* directions,
+               std::uint32_t count, Vec3* radiance) {
+  thread_local std::vector<float> results;
+  run(program, scratch, directions, count, results);
   for (std::uint32_t i = 0; i < count; ++i) {
-    radiance[i] = shown(results[0][i], results[1][i], results[2][i]);
+    radiance[i] = shown(results[i], results[kLanes + i], results[2 * kLanes + i]);
   }
+}
+
+void world_values(const Program& program, const Vec3& direction, std::uint32_t count,
+                  float* values) {
+  thread_local Program::Scratch scratch;
+  thread_local std::vector<float> results;
+  run(program, scratch, &direction, 1, results);
+  for (std::uint32_t i = 0; i < count; ++i) values[i] = results[i * kLanes];
 }
 
 Vec3 world_radiance(const RenderContext& context, const Vec3& direction) {

@@ -19,6 +19,10 @@ Vec3 world_radiance(const RenderContext& context, const Vec3& direction);
 void run_world(const Program& program, Program::Scratch& scratch, const Vec3* directions,
                std::uint32_t count, Vec3* radiance);
 
+/// The first `count` outputs of a world's program in a direction: what it says for shader AOVs.
+void world_values(const Program& program, const Vec3& direction, std::uint32_t count,
+                  float* values);
+
 /// The largest channel of what a world's program says in some thousand directions.
 float brightest(const Program& program);
 

@@ -1,18 +1,12 @@
 #include <cmath>
 
 #include "core/environment.h"
+#include "shader/op_sampling.h"
 #include "shader/op_table.h"
 #include "texture/texture.h"
 
 namespace komorebi {
 namespace {
-
-/// The parameters of an operation on a texture begin with these: interpolation, extension, whether
-/// colours are divided by alpha.
-TextureSampling sampling_of(const float* numbers) {
-  return {static_cast<Interpolation>(static_cast<int>(numbers[0])),
-          static_cast<Extension>(static_cast<int>(numbers[1])), numbers[2] != 0.0f};
-}
 
 void put(const OpCall& c, std::uint32_t i, const Vec4& value) {
   for (int k = 0; k < 4; ++k) c.out[k][i] = value[k];

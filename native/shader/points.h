@@ -69,6 +69,15 @@ inline constexpr PointInputInfo kPointInputInfo[kPointInputs] = {
     {"object_z", 3},
 };
 
+/// Whether an attribute's name asks for how much the rest of it changes by a step in the surface:
+/// to the next pixel, or to the end of a ray's cone.
+inline bool asks_for_step(std::string_view attribute) {
+  for (const std::string_view step : {"dx:", "dy:", "cone_x:", "cone_y:"}) {
+    if (attribute.starts_with(step)) return true;
+  }
+  return false;
+}
+
 /// Points as columns of floats, a lane a point. Only what the program asks for has to be there
 /// (Program::inputs, Program::attributes).
 struct ShadePoints {

@@ -64,4 +64,44 @@ void Program::run(const ShadePoints& points, Scratch& scratch, float* const* out
   }
 }
 
+WrittenProgram Program::written() const {
+  WrittenProgram written;
+  std::vector<Operand> holds(row_count_);  // what is in each row so far
+  for (std::size_t i = 0; i < constants_.size(); ++i) holds[i].constant = constants_[i];
+  for (const Step& step : steps_) {
+    const std::uint32_t* index = &rows_[step.first_row];
+    OpInput op;
+    std::uint32_t outputs = 4;
+    if (step.kind == Kind::kInput) {
+      op.op = "input";
+      op.name = kPointInputInfo[step.which].name;
+      outputs = kPointInputInfo[step.which].width;
+    } else if (step.kind == Kind::kAttribute) {
+      op.op = "attribute";
+      op.name = attributes_[step.which];
+    } else {
+      op.op = step.op->name;
+      for (std::uint32_t i = 0; i < step.op->inputs; ++i) op.operands.push_back(holds[*index++]);
+      const float* const numbers = numbers_.data() + step.first_number;
+      op.numbers.assign(numbers, numbers + step.op->numbers);
+      const float* const table = tables_.data() + step.first_table;
+      op.table.assign(table, table + step.table_size);
+      const auto of_step = [&](const auto& texture) { return texture.get() == step.texture; };
+      const auto found = std::find_if(textures_.begin(), textures_.end(), of_step);
+      if (found != textures_.end() && step.texture != nullptr) op.texture = *found;
+      outputs = step.op->outputs;
+    }
+    for (std::uint32_t i = 0; i < outputs; ++i) {
+      holds[*index++] = {static_cast<std::uint32_t>(written.ops.size()), i, 0.0f};
+    }
+    written.ops.push_back(std::move(op));
+  }
+  for (const Source& source : outputs_) {
+    Operand constant;
+    constant.constant = source.constant;
+    written.outputs.push_back(source.row == kNoRow ? constant : holds[source.row]);
+  }
+  return written;
+}
+
 }  // namespace komorebi

@@ -27,6 +27,12 @@ struct OpInput {
   std::shared_ptr<const Texture> texture;
 };
 
+/// What a program does, as an exporter could have written it down.
+struct WrittenProgram {
+  std::vector<OpInput> ops;
+  std::vector<Operand> outputs;
+};
+
 /// A world's or material's nodes as a list of operations on rows of floats, a lane a point:
 /// immutable, to be shared and counted. What is the same at all points is worked out once, by the
 /// very operations that work on points; what nothing needs is left out.
@@ -51,6 +57,8 @@ class Program {
   bool asks(PointInput input) const { return inputs_ >> static_cast<std::uint32_t>(input) & 1u; }
   /// Names of the attributes that points need, in the order of ShadePoints::attribute.
   const std::vector<std::string>& attributes() const { return attributes_; }
+  /// The operations that are left of it, from which it could be made again.
+  WrittenProgram written() const;
   std::size_t step_count() const { return steps_.size(); }
   std::uint32_t row_count() const { return row_count_; }
 

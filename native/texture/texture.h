@@ -62,6 +62,14 @@ class Texture {
   std::uint32_t height() const { return levels_.empty() ? 0 : levels_[0].height; }
   std::uint32_t channels() const { return channels_; }
   TexelType type() const { return type_; }
+  bool is_srgb() const { return srgb_; }
+  bool is_data() const { return data_; }
+  const std::vector<Tile>& tiles() const { return tiles_; }
+  /// Of the finest level that is kept, [height][width][channels].
+  std::span<const std::byte> finest_texels() const {
+    const std::size_t texels = std::size_t{width()} * height();
+    return {levels_.at(0).data, texels * channels_ * texel_bytes(type_)};
+  }
   std::size_t level_count() const { return levels_.size(); }
   std::size_t byte_count() const;
   std::uint64_t nonfinite_texels() const;

@@ -6,11 +6,11 @@ Cycles' own `ui.py` in every release.
 
 VOLUMES = "volumes are not rendered"
 LINKING = "lamps light all objects"
-LAMP_NODES = "of a light's nodes one Emission counts; they are edited in the node editor"
+LAMP_NODES = "a light's nodes are edited in the node editor"
 LAMP_SETTINGS = "one strategy finds lamps, and its choice among many has no settings"
 GUIDING = "light rays are guided by what surfaces see of the sky, bounces by the cosine alone"
-FAST_GI = "light bounces, or does not: there is no approximation of it"
-VIEWPORT = "there is no rendered view in the viewport"
+OWN_DISTANCE = "all objects have the world's AO distance"
+VIEWPORT = "the rendered viewport has no such settings yet"
 BAKING = "there is no baking"
 PREVIEWS = "previews are not rendered"
 MATERIALS = "displacement is always relief, and surfaces that shine light nothing else yet"
@@ -28,6 +28,7 @@ REPLACED = {
     "CYCLES_RENDER_PT_light_paths": "KOMOREBI_RENDER_PT_light_paths",
     "CYCLES_RENDER_PT_light_paths_max_bounces": "KOMOREBI_RENDER_PT_light_paths_max_bounces",
     "CYCLES_RENDER_PT_light_paths_clamping": "KOMOREBI_RENDER_PT_light_paths_clamping",
+    "CYCLES_RENDER_PT_light_paths_fast_gi": "KOMOREBI_RENDER_PT_light_paths_fast_gi",
     "CYCLES_RENDER_PT_curves": "KOMOREBI_RENDER_PT_curves",
     "CYCLES_RENDER_PT_simplify": "KOMOREBI_RENDER_PT_simplify",
     "CYCLES_RENDER_PT_simplify_viewport": "KOMOREBI_RENDER_PT_simplify_viewport",
@@ -60,11 +61,18 @@ REPLACED = {
     "CYCLES_LIGHT_PT_light": "KOMOREBI_LIGHT_PT_light",
     "CYCLES_LIGHT_PT_beam_shape": "KOMOREBI_LIGHT_PT_light",
     "CYCLES_WORLD_PT_surface": "KOMOREBI_WORLD_PT_surface",
+    "CYCLES_WORLD_PT_settings": "KOMOREBI_WORLD_PT_settings",
+    "CYCLES_WORLD_PT_settings_surface": "KOMOREBI_WORLD_PT_settings",
     "CYCLES_WORLD_PT_mist": "KOMOREBI_WORLD_PT_mist",
     "CYCLES_WORLD_PT_ray_visibility": "KOMOREBI_WORLD_PT_ray_visibility",
     "CYCLES_MATERIAL_PT_surface": "KOMOREBI_MATERIAL_PT_surface",
     "CYCLES_MATERIAL_PT_settings": "KOMOREBI_MATERIAL_PT_settings",
     "draw_device": "draw_method",
+    "draw_pause": "draw_pause",
+    "CYCLES_RENDER_PT_sampling_viewport": "KOMOREBI_RENDER_PT_sampling_viewport",
+    "CYCLES_RENDER_PT_performance_viewport": "KOMOREBI_RENDER_PT_performance_viewport",
+    "CYCLES_VIEW3D_PT_shading_lighting": "KOMOREBI_VIEW3D_PT_shading_lighting",
+    "CYCLES_VIEW3D_PT_shading_render_pass": "KOMOREBI_VIEW3D_PT_shading_render_pass",
 }
 # Cycles' class → Blender's own, which we show as well.
 ADOPTED = {
@@ -78,29 +86,22 @@ LEFT_OUT = {
     "CYCLES_PT_viewport_sampling_presets": VIEWPORT,
     "CYCLES_PT_integrator_presets": "presets of Cycles' settings",
     "CYCLES_PT_performance_presets": "presets of Cycles' settings",
-    "CYCLES_RENDER_PT_sampling_viewport": VIEWPORT,
     "CYCLES_RENDER_PT_sampling_viewport_denoise": VIEWPORT,
     "CYCLES_RENDER_PT_sampling_path_guiding": GUIDING,
     "CYCLES_RENDER_PT_sampling_path_guiding_debug": GUIDING,
     "CYCLES_RENDER_PT_sampling_lights": LAMP_SETTINGS,
     "CYCLES_RENDER_PT_light_paths_caustics": "all surfaces are matt: there are no caustics",
-    "CYCLES_RENDER_PT_light_paths_fast_gi": (
-        FAST_GI + "; its AO distance is in KOMOREBI_WORLD_PT_ambient_occlusion"
-    ),
     "CYCLES_RENDER_PT_volumes": VOLUMES,
     "CYCLES_RENDER_PT_subdivision": "adaptive subdivision is not rendered: Blender subdivides",
     "CYCLES_RENDER_PT_curves_viewport_display": VIEWPORT,
     "CYCLES_RENDER_PT_simplify_culling": "what is far or outside of the view is rendered too",
-    "CYCLES_VIEW3D_PT_shading_lighting": VIEWPORT,
-    "CYCLES_VIEW3D_PT_shading_render_pass": VIEWPORT,
     "CYCLES_VIEW3D_PT_shading_debug": VIEWPORT,
     "CYCLES_RENDER_PT_performance_memory": "no tiles that a user would choose: Progressive does",
     "CYCLES_RENDER_PT_performance_acceleration_structure": "the tree is chosen by itself",
-    "CYCLES_RENDER_PT_performance_viewport": VIEWPORT,
     "CYCLES_RENDER_PT_performance_texture_cache": "there is no cache of textures",
     "CYCLES_RENDER_PT_passes_lightgroups": LIGHT_GROUPS,
     "CYCLES_CAMERA_PT_lens_custom_parameters": "cameras by OSL shaders are not rendered",
-    "CYCLES_OBJECT_PT_shading_gi_approximation": FAST_GI,
+    "CYCLES_OBJECT_PT_shading_gi_approximation": OWN_DISTANCE,
     "CYCLES_OBJECT_PT_shading_caustics": "all surfaces are matt: there are no caustics",
     "CYCLES_OBJECT_PT_lightgroup": LIGHT_GROUPS,
     "CYCLES_OBJECT_PT_visibility_culling": "what is far or outside of the view is rendered too",
@@ -113,11 +114,6 @@ LEFT_OUT = {
     "CYCLES_LIGHT_PT_settings": LAMP_SETTINGS,
     "CYCLES_WORLD_PT_preview": PREVIEWS,
     "CYCLES_WORLD_PT_volume": VOLUMES,
-    "CYCLES_WORLD_PT_settings": "only of the three below",
-    "CYCLES_WORLD_PT_settings_surface": (
-        "the map's resolution is the image's; scene.komorebi.environment_sampling says how it is "
-        "sampled"
-    ),
     "CYCLES_WORLD_PT_settings_volume": VOLUMES,
     "CYCLES_WORLD_PT_settings_light_group": LIGHT_GROUPS,
     "CYCLES_MATERIAL_PT_preview": PREVIEWS,
@@ -142,7 +138,6 @@ LEFT_OUT = {
     "NODE_CYCLES_LIGHT_PT_beam_shape": COPY,
     "NODE_CYCLES_LIGHT_PT_settings": LAMP_SETTINGS,
     "draw_make_links": LINKING,
-    "draw_pause": VIEWPORT,
 }
 # Blender's own panels that Cycles shows and we do not, beside those that the add-on excludes.
 NOT_SHOWN = {
@@ -155,6 +150,10 @@ INSIDE = (
     ("OUTLINER_MT_collection_view_layer", "Set and Clear Indirect Only", "draw_indirect_only"),
     ("RENDER_PT_context", "Cycles' device", "draw_method"),
     ("the node editor's Add menu and search, in 3.4", "shaders", "node_menu.py"),
-    ("VIEW3D_PT_shading_lighting", "lights of the rendered view", "left out: " + VIEWPORT),
+    (
+        "VIEW3D_PT_shading_lighting",
+        "lights of the rendered view",
+        "KOMOREBI_VIEW3D_PT_shading_lighting",
+    ),
     ("DATA_PT_volume_render", "Cycles' space of steps", "left out: " + VOLUMES),
 )

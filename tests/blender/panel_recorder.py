@@ -44,6 +44,8 @@ class Layout:
                            _argument(name, place, arguments, options))  # fmt: skip
         if name in ("operator", "operator_menu_enum"):
             module, function = arguments[0].split(".")
+            if bpy.app.background and module == "preferences":
+                return types.SimpleNamespace()  # the `bpy` module has no such operators
             getattr(getattr(bpy.ops, module), function).get_rna_type()  # raises if there is none
             self.drawn.add((name, arguments[0]))
             return types.SimpleNamespace(settings=Collection())

@@ -3,10 +3,16 @@
 import types
 
 import bpy
+from komorebi.properties import KomorebiViewSettings
 from panel_recorder import Context
 
+# A viewport that shows a studio light in Rendered shading.
+SHADING = types.SimpleNamespace(
+    bl_rna=bpy.types.View3DShading.bl_rna, type="RENDERED", use_scene_world_render=False,
+    komorebi=types.SimpleNamespace(bl_rna=KomorebiViewSettings.bl_rna),
+)  # fmt: skip
 SPACE = types.SimpleNamespace(
-    type="PROPERTIES", context="OBJECT", pin_id=None, use_pin_id=False, search_filter="",
+    shading=SHADING, type="PROPERTIES", context="OBJECT", pin_id=None, use_pin_id=False, search_filter="",
     path_from_id=lambda *_: "",
 )  # fmt: skip
 DATA_MEMBERS = {

@@ -20,7 +20,9 @@ said to stand in its place is not drawn.
 
 Settings that are Cycles' own (`object.cycles`, `scene.cycles_curves`, `world.cycles_visibility`, in 3.4 the panoramas in
 `camera.cycles`) are shown as Cycles has them, so that a file keeps its artist's values; while Cycles' add-on is switched off
-they do not exist, and their panels are not shown.
+they do not exist, and their panels are not shown. Max Bounces of lamps and of worlds, and Cast Shadow up to 4.2, are such: without
+Cycles there is no limit. Of a world's Sampling (None, Auto, Manual) nothing is left to choose, since its light is always
+looked for by its brightness; a Manual resolution is World Map Resolution here (`scene.komorebi.world_resolution`).
 """
 
 

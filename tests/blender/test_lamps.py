@@ -118,6 +118,103 @@ def test_colour_nodes_and_what_is_left_out(folder):
     assert irradiance(folder) == math.pi
 
 
+def with_nodes(light):
+    """The light's tree and its Emission."""
+    light.data.use_nodes = True
+    tree = light.data.node_tree
+    return tree, tree.nodes["Emission"]
+
+
+def test_falloff_as_its_node_says(folder):
+    _, light = scene_with("POINT", shadow_soft_size=0.0)
+    tree, emission = with_nodes(light)
+    node = tree.nodes.new("ShaderNodeLightFalloff")
+    node.inputs["Strength"].default_value = 3.0
+    point = 3.0 * 10.0 / (16.0 * math.pi)  # two metres away
+    for smooth in (0.0, 4.0):
+        node.inputs["Smooth"].default_value = smooth
+        for output, factor in (("Quadratic", 1.0), ("Linear", 2.0), ("Constant", 4.0)):
+            tree.links.new(node.outputs[output], emission.inputs["Strength"])
+            expect(folder, point * factor * (4.0 / (4.0 + smooth)))
+    twice = tree.nodes.new("ShaderNodeMath")
+    twice.operation, twice.inputs[1].default_value = "MULTIPLY", 2.0
+    tree.links.new(node.outputs["Linear"], twice.inputs[0])
+    tree.links.new(twice.outputs[0], emission.inputs["Strength"])
+    expect(folder, point * 2.0)
+    assert warnings_of(folder) == ""
+    twice.operation = "POWER"
+    assert 'light "Key": its nodes let the light fall off' in warnings_of(folder)
+    light.data.type = "SUN"  # too far away for it
+    twice.operation = "MULTIPLY"
+    bpy.data.lights["Key"].angle = 0.0
+    expect(folder, 60.0)
+
+
+def test_nodes_that_come_to_a_constant(folder):
+    _, light = scene_with("POINT", shadow_soft_size=0.0)
+    tree, emission = with_nodes(light)
+    blackbody = tree.nodes.new("ShaderNodeBlackbody")
+    blackbody.inputs[0].default_value = 3000.0
+    tree.links.new(blackbody.outputs[0], emission.inputs["Color"])
+    maths = tree.nodes.new("ShaderNodeMath")
+    maths.operation = "ADD"
+    maths.inputs[0].default_value, maths.inputs[1].default_value = 1.5, 0.5
+    tree.links.new(maths.outputs[0], emission.inputs["Strength"])
+    mixed, second = tree.nodes.new("ShaderNodeAddShader"), tree.nodes.new("ShaderNodeEmission")
+    second.inputs["Color"].default_value = (0.0, 0.0, 1.0, 1.0)
+    tree.links.new(emission.outputs[0], mixed.inputs[0])
+    tree.links.new(second.outputs[0], mixed.inputs[1])
+    output = next(n for n in tree.nodes if n.type == "OUTPUT_LIGHT")
+    tree.links.new(mixed.outputs[0], output.inputs["Surface"])
+    picture = support.render(folder)[..., :3].mean(axis=(0, 1)) * 16.0 * math.pi**2 / 10.0
+    expected = 2.0 * np.array([1.771, 0.844, 0.272]) + (0.0, 0.0, 1.0)  # 3000 K, twice
+    assert np.allclose(picture, expected, rtol=1e-2), (picture, expected)
+    assert warnings_of(folder) == ""
+
+
+def test_max_bounces_of_lights_and_world(folder):
+    scene, light = scene_with("POINT", shadow_soft_size=0.0)
+    assert support.exported().lamps[0].sizes["max_bounces"] == 1024
+    light.data.cycles.max_bounces = 3
+    assert support.exported().lamps[0].sizes["max_bounces"] == 3
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.cycles.max_bounces = 2
+    layer = scene.view_layers[0]
+    region = (0, 0, 8, 8)
+    from komorebi.export.settings import export_settings
+
+    assert export_settings(scene, layer, [], region)["world_max_bounces"] == 2
+    scene.komorebi.sky = "WHITE"
+    assert export_settings(scene, layer, [], region)["world_max_bounces"] == 1024
+
+
+def test_fast_gi_reads_factor_and_distance_of_the_world(folder):
+    """In the open ambient occlusion is 1: what Add brings is its factor, Replace the world's light
+    times it."""
+    scene, light = scene_with("POINT", shadow_soft_size=0.0)
+    light.data.energy = 0.0
+    scene.komorebi.bounces = 0
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.color = (0.5, 0.5, 0.5)
+    scene.world.use_nodes = False
+    scene.world.light_settings.ao_factor = 0.25
+    expect(folder, 0.5 * math.pi)
+    scene.komorebi.use_fast_gi = True
+    expect(folder, 0.125 * math.pi)
+    scene.komorebi.fast_gi_method = "ADD"
+    expect(folder, 0.75 * math.pi)
+    bpy.ops.mesh.primitive_plane_add(size=400.0, location=(0.0, 0.0, 3.0))
+    scene.world.light_settings.distance = 3.5
+    # Nearer than that the roof hides all but what grazes: cos² of the angle at its limit.
+    expect(folder, 0.25 * math.pi * (3.0 / 3.5) ** 2, 2e-2)
+    scene.komorebi.fast_gi_method = "REPLACE"
+    assert warnings_of(folder) == ""
+    bpy.context.object.cycles.ao_distance = 1.0
+    assert "an AO Distance of its own is not supported yet" in warnings_of(folder)
+    scene.world = None
+    assert irradiance(folder) == 0.0
+
+
 def warnings_of(folder):
     """What a render warns of."""
     with support.warnings() as said:

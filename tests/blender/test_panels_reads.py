@@ -37,6 +37,7 @@ ELSEWHERE = {
     "kink": "drawn where strands have children",
     "kink_extra_steps": "drawn where strands have children that wind",
     "matrix_world": "by Transform",
+    "preview_pause": "the viewport's header",
     "shadow_terminator_offset": "of Cycles up to 4.1, drawn as the object's own after that",
     "use_adaptive_subdivision": "read to say that it is ignored",
     "use_nodes": "always on from 5.0, drawn before",

@@ -11,11 +11,13 @@ DEFAULTS = {
     "seed": 0, "use_animated_seed": False, "ao_distance": 0.0, "ao_sampling": "COSINE",
     "environment_sampling": "PRODUCT", "pixel_filter": "BLACKMAN_HARRIS", "filter_width": 1.5,
     "use_progressive": True, "bounces": 2, "ao_indirect_bounces": 0, "sample_clamp_direct": 0.0,
-    "sample_clamp_indirect": 10.0,
+    "sample_clamp_indirect": 10.0, "use_fast_gi": False, "fast_gi_method": "REPLACE",
+    "ao_bounces_render": 1,
 }  # fmt: skip
 ITEMS = {
     "method": ["AMBIENT_OCCLUSION", "WORLD_LIGHT"],
     "ao_sampling": ["COSINE", "UNIFORM"],
+    "fast_gi_method": ["REPLACE", "ADD"],
     "environment_sampling": ["MIS", "COSINE", "ENVIRONMENT", "PRODUCT"],
     "pixel_filter": ["BLACKMAN_HARRIS", "GAUSSIAN", "BOX"],
 }

@@ -40,6 +40,9 @@ class Job:
     stereo: str | None = None
     bounces: int = 0
     materials: bool = False
+    fast_gi: str | None = None
+    ao_bounces: int = 1
+    ao_distance: float | None = None
 
 
 @dataclass(frozen=True)

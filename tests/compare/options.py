@@ -52,6 +52,15 @@ def parser() -> argparse.ArgumentParser:
         "--materials", action="store_true",
         help="with --mode world: the scene's own materials and world, made matt",
     )  # fmt: skip
+    made.add_argument(
+        "--fast-gi", choices=("replace", "add"), help="with --mode world: Fast GI Approximation"
+    )
+    made.add_argument(
+        "--ao-bounces", type=int, default=1, help="after how many bounces --fast-gi replace sets in"
+    )
+    made.add_argument(
+        "--ao-distance", type=float, help="metres, of --fast-gi (default: the world's)"
+    )
     made.add_argument("--flat", action="store_true", help="shade Cycles with the geometric normal")
     made.add_argument(
         "--world-image", type=Path, help="light world mode with this equirectangular picture"
@@ -90,6 +99,10 @@ def read(words: list[str]) -> argparse.Namespace:
         made.error("--materials goes with --mode world")
     if options.bounces < 0:
         made.error("--bounces must be at least 0")
+    if options.fast_gi is not None and options.mode != "world":
+        made.error("--fast-gi goes with --mode world")
+    if options.ao_bounces < 0:
+        made.error("--ao-bounces must be at least 0")
     if options.samples < 1 or options.seeds < 2 or options.size < 4:
         made.error("--samples must be at least 1, --seeds at least 2 and --size at least 4")
     if options.seeds < 8:
@@ -122,6 +135,9 @@ def jobs(options: argparse.Namespace, scene: Path, mode: str) -> tuple[Job, Job]
         stereo=options.stereo,
         bounces=options.bounces,
         materials=options.materials,
+        fast_gi=options.fast_gi,
+        ao_bounces=options.ao_bounces,
+        ao_distance=options.ao_distance,
     )
     seeds = [seed + SECOND_SEED for seed in first.seeds]
     return first, Job(**{**vars(first), "engine": options.second, "seeds": seeds})

@@ -43,6 +43,11 @@ def test_what_does_not_fit_is_refused() -> None:
         scene(material_values=np.zeros((2, 1), np.float32))
     with pytest.raises(ValueError, match="not finite"):
         scene(material_values=np.array([[np.nan]], np.float32))
+    two = core.Program("two", [], [0.0, 1.0])
+    with pytest.raises(ValueError, match="two: a program of values has as many outputs"):
+        scene(material_values=np.zeros((1, 1), np.float32), value_programs=[two])
+    with pytest.raises(ValueError, match="as many as materials"):
+        scene(material_values=np.zeros((1, 2), np.float32), value_programs=[two, None])
     made = scene(material_values=np.zeros((1, 2), np.float32))
     for name, sentence in (
         ("Material Value 1 2", "does not have"),

@@ -119,6 +119,10 @@ inline std::shared_ptr<Scene> telling_scene(const Lottery* lottery = nullptr,
   tables.slots = {0, 1, 0};
   tables.value_count = 4;
   tables.values = {0.0f, 0.25f, 2.0f, 1.0f, 9.0f, -300.0f, 0.1f, 1.0f};
+  MadeProgram varying;
+  tables.value_programs = {
+      varying.program({varying.input("normal"), varying.input("backfacing", 1)}), nullptr};
+  tables.world_values = varying.program({varying.input("incoming"), MadeProgram::number(0.5)});
   scene->set_tables(std::move(tables));
   if (!surfaces.empty()) scene->set_surfaces(std::move(surfaces), {});
   add_lamps(*scene);

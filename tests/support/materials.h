@@ -32,6 +32,13 @@ class MadeProgram {
     return out;
   }
 
+  /// Any operation, on one vector after the other.
+  Vec op(OpInput made, std::uint32_t outputs, const std::vector<Vec>& operands) {
+    for (const Vec& v : operands) {
+      made.operands.insert(made.operands.end(), v.begin(), v.end());
+    }
+    return add(std::move(made), outputs);
+  }
   /// What of a value the ray's cone covers, if it changes as the position does.
   Vec footprint(const Vec& place) {
     Vec all = place;

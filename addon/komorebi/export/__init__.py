@@ -8,15 +8,16 @@ from typing import Any
 
 from ..errors import RenderCancelled
 from ..passes import value_columns
-from ..scene_data import SceneData
+from ..scene_data import SceneData, WorldData
 from ..unchanged import Unchanged
-from .aovs import warn_world
+from .aovs import AovReader
 from .camera_motion import CameraMotion
 from .deform import DeformingShapes
-from .instance import export_instances
+from .instance import Shown, export_instances
 from .motion import InstanceMotion
 from .shutter import Shutter, export_shutter
 from .sky_choice import export_sky
+from .surroundings import surroundings_of
 from .unsupported import warn_scene
 from .wanted import Wanted
 
@@ -32,8 +33,6 @@ def export_scene(
     times, too, and is at its frame again afterwards.
     """
     warn_scene(engine, depsgraph.scene)
-    if depsgraph.view_layer.use_sky and depsgraph.scene.komorebi.sky == "SCENE":
-        warn_world(engine, depsgraph.scene.world, value_columns(depsgraph.view_layer))
     exported_world = export_sky(engine, depsgraph.scene, depsgraph.view_layer)
     shutter = export_shutter(depsgraph.scene, depsgraph.view_layer, sources)
     unchanged = unchanged or Unchanged()
@@ -48,6 +47,10 @@ def export_scene(
         )
         deforming = DeformingShapes(engine, depsgraph, shutter)
         motion = None if shutter is None else InstanceMotion(shutter, deforming)
+        if depsgraph.view_layer.use_sky and depsgraph.scene.komorebi.sky == "SCENE":
+            columns = value_columns(depsgraph.view_layer)
+            aovs = AovReader(engine, columns, surroundings_of(depsgraph.scene))
+            data.world_values = aovs.of_world(depsgraph.scene.world)
         wanted = Wanted.by(sources)
         export_instances(engine, depsgraph, data, wanted, unchanged, deforming, motion)
         if shutter is not None and motion is not None:
@@ -56,6 +59,22 @@ def export_scene(
             deforming.finish(data.meshes)
             for camera in cameras:
                 camera.finish()
+    return data
+
+
+def export_view(
+    engine: Any, depsgraph: Any, unchanged: Unchanged, shown: Shown | None,
+    world: WorldData | None, sources: Collection[str],
+) -> SceneData:  # fmt: skip
+    """What a viewport's depsgraph shows, without a camera: the view has one of its own. `world` in
+    place of the scene's."""
+    unchanged.begin(depsgraph)
+    data = SceneData(
+        cameras={},
+        world=world or export_sky(engine, depsgraph.scene, depsgraph.view_layer),
+        texture_limit=depsgraph.scene.komorebi.texture_limit << 20,
+    )
+    export_instances(engine, depsgraph, data, Wanted.by(sources), unchanged, shown=shown)
     return data
 
 

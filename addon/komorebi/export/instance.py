@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from array import array
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -25,6 +26,8 @@ from .walk import Subject, object_of, walk
 from .wanted import Wanted
 
 UNSUPPORTED_TYPES = {"VOLUME": "a volume"}  # grease pencil is drawn by Blender, over the picture
+# Whether an instance of a subject is to be seen.
+Shown = Callable[[Any, Subject], bool]
 FLUSH_INTERVAL = 256  # instances of which Python's own numbers are kept at a time
 
 
@@ -40,11 +43,13 @@ class _Entry:
 def export_instances(
     engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted, unchanged: Unchanged,
     deforming: DeformingShapes | None = None, motion: InstanceMotion | None = None,
+    shown: Shown | None = None,
 ) -> None:  # fmt: skip
     """Fills shapes, instances, objects, lamps and materials into `data`; `motion` learns
-    which instances there are, and `deforming` which shapes may change."""
+    which instances there are, and `deforming` which shapes may change. Instances that `shown`
+    denies are left out."""
     deforming = deforming or DeformingShapes(engine, depsgraph, None)
-    exporter = _Exporter(engine, depsgraph, data, wanted, unchanged, deforming, motion)
+    exporter = _Exporter(engine, depsgraph, data, wanted, unchanged, deforming, motion, shown)
     exporter.walk()
     data.instances = exporter.groups()
 
@@ -54,13 +59,14 @@ class _Exporter:
 
     def __init__(
         self, engine: Any, depsgraph: Any, data: SceneData, wanted: Wanted, unchanged: Unchanged,
-        deforming: DeformingShapes, motion: InstanceMotion | None,
+        deforming: DeformingShapes, motion: InstanceMotion | None, shown: Shown | None,
     ) -> None:  # fmt: skip
         self._engine = engine
         self._depsgraph = depsgraph
         self._data = data
         self._object2index: dict[int, int] = {}
         self._motion = motion
+        self._shown = shown
         self._lamps = LampExporter(engine, data.lamps)
         self._visibility = Visibility(depsgraph)
         self._materials = MaterialExporter(
@@ -83,7 +89,8 @@ class _Exporter:
         for number, instance, subject in walk(self._engine, self._depsgraph):
             if number == 0 and not loses_memory(instance):
                 self._matrices = AllAtOnce()
-            self._take(subject, instance, number)
+            if self._shown is None or self._shown(instance, subject):
+                self._take(subject, instance, number)
             if number % FLUSH_INTERVAL == 0:
                 self._matrices.flush()
         self._matrices.finish(self._depsgraph, number + 1)

@@ -4,19 +4,39 @@ does it (its scene/light.cpp and kernel/light/, 3.4 and 4.2 to 5.x)."""
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from .. import compat, reporting
-from ..scene_data import DoubleArray, LampData
+from ..scene_data import DoubleArray, LampData, ProgramData
 from . import nodes
 from .names import name_of
+from .shader import Compiler, Ray
+from .shader.closures import total
 from .walk import Subject, object_of
 
 Color = tuple[float, float, float]
 MOST_ANGLE = math.pi - 1e-7  # of a sun by the tangent of its half
 LEAST_SPREAD = math.radians(1.0)  # Cycles 3.x
+
+BLACK: Color = (0.0, 0.0, 0.0)
+# Nodes that differ from place to place.
+VARYING = {
+    "TEX_IMAGE", "TEX_ENVIRONMENT", "TEX_CHECKER", "TEX_BRICK", "TEX_GRADIENT", "TEX_MAGIC",
+    "TEX_MUSGRAVE", "TEX_NOISE", "TEX_VORONOI", "TEX_WAVE", "TEX_WHITE_NOISE", "TEX_SKY",
+    "TEX_COORD", "UVMAP", "ATTRIBUTE", "VERTEX_COLOR", "NEW_GEOMETRY", "LAYER_WEIGHT", "FRESNEL",
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Emission:
+    """The light of a lamp's data: power times colour, times what a program gives."""
+
+    strength: Color
+    program: ProgramData | None = None
+    uneven: str = ""  # LampData.uneven
 
 
 class LampExporter:
@@ -25,7 +45,7 @@ class LampExporter:
     def __init__(self, engine: Any, lamps: list[LampData]) -> None:
         self._engine = engine
         self._lamps = lamps
-        self._known: dict[int, tuple[Any, Color]] = {}  # data and strength, by Subject.address
+        self._known: dict[int, tuple[Any, Emission]] = {}  # with the data, by Subject.address
 
     def take(self, instance: Any, subject: Subject) -> None:
         """Adds the lamp that an instance is, unless it gives no light."""
@@ -33,23 +53,25 @@ class LampExporter:
         known = self._known.get(subject.address)
         if known is None:
             known = self._known[subject.address] = self._read(object_of(instance).data, original)
-        light, strength = known
-        if not any(strength):
+        light, emission = known
+        if not any(emission.strength):
             return
         matrix = np.array(instance.matrix_world, np.float64)
-        lamp = _lamp(light, strength, matrix)
+        lamp = _lamp(light, emission.strength, matrix)
         if lamp is None:
             return
+        lamp.program, lamp.uneven = emission.program, emission.uneven
+        lamp.sizes["max_bounces"] = float(compat.max_bounces(light))
         lamp.name = name_of(original)
         lamp.casts_shadow = compat.casts_shadow(light)
         lamp.lights_catchers = bool(original.is_shadow_catcher)
         self._lamps.append(lamp)
 
-    def _read(self, light: Any, original: Any) -> tuple[Any, Color]:
+    def _read(self, light: Any, original: Any) -> tuple[Any, Emission]:
         if not original.visible_diffuse or _is_portal(light):
-            return light, (0.0, 0.0, 0.0)
+            return light, Emission(BLACK)
         self._warn_object(original, light)
-        return light, self._strength_of(light)
+        return light, self._nodes(light, self._strength_of(light))
 
     def _warn_object(self, original: Any, light: Any) -> None:
         name = name_of(original)
@@ -63,67 +85,38 @@ class LampExporter:
                 self._engine, f'light "{name}": {what} is not supported yet, all objects count'
             )
 
-    def _strength_of(self, light: Any) -> Color:
+    @staticmethod
+    def _strength_of(light: Any) -> Color:
         energy = light.energy * compat.light_factor(light)
         tint = compat.light_tint(light)
-        emitted = self._emission(light)
         return tuple(  # type: ignore[return-value]
-            float(light.color[c] * tint[c] * energy * emitted[c]) for c in range(3)
+            float(light.color[c] * tint[c] * energy) for c in range(3)
         )
 
-    def _emission(self, light: Any) -> Color:
-        """What a light's nodes make of its power, a factor."""
+    def _nodes(self, light: Any, strength: Color) -> Emission:
+        """What a light's nodes make of its power."""
         tree = compat.shader_nodes(light)
         if tree is None:
-            return (1.0, 1.0, 1.0)
+            return Emission(strength)
         output = nodes.light_output(tree)
-        surface = None if output is None else nodes.source(output.inputs["Surface"])
-        if surface is None:
-            return (0.0, 0.0, 0.0)
-        node = surface.node
-        if node.type != "EMISSION":
-            found = nodes.find_upstream(node, {"EMISSION"})
-            if found is None:
-                self._warn(light, node, "not supported yet and has no Emission, rendered without")
-                return (1.0, 1.0, 1.0)
-            self._warn(light, node, f'not supported yet, rendered as its "{name_of(found)}" alone')
-            node = found
-        color = self._constant(light, node.inputs["Color"])
-        strength = self._constant(light, node.inputs["Strength"])[0]
-        return (color[0] * strength, color[1] * strength, color[2] * strength)
+        if output is None:
+            return Emission(BLACK)
+        compiler = Compiler(self._engine, f'light "{name_of(light)}"', Ray("LIGHT"))
+        surface = output.inputs["Surface"]
+        shines = total(compiler.builder, compiler.closures(surface), "EMISSION")
+        constant = [value for value in shines if isinstance(value, float)]
+        if len(constant) == 3:
+            return Emission(tuple(s * c for s, c in zip(strength, constant, strict=True)))  # type: ignore[arg-type]
+        program = ProgramData(compiler.owner, compiler.builder.ops, shines)
+        return Emission(strength, program, self._uneven(compiler.owner, surface))
 
-    def _constant(self, light: Any, socket: Any) -> Color:
-        feeding = nodes.source(socket)
-        if feeding is None:
-            return _color(socket.default_value)
-        node = feeding.node
-        if node.type in {"VALUE", "RGB"}:
-            return _color(feeding.default_value)
-        if node.type == "LIGHT_FALLOFF":
-            return self._falloff(light, feeding)
-        value = _color(socket.default_value)
-        self._warn(light, node, f"not supported yet as {socket.name}, its own value is rendered")
-        return value
-
-    def _falloff(self, light: Any, output: Any) -> Color:
-        """Quadratic is what light does anyway; the others would need the distance."""
-        node = output.node
-        strength, smooth = node.inputs["Strength"], node.inputs["Smooth"]
-        if output.name != "Quadratic":
-            self._warn(light, node, f"{output.name} falloff is not supported yet, but Quadratic")
-        if nodes.source(smooth) is not None or smooth.default_value > 0.0:
-            self._warn(light, node, "Smooth is not supported yet")
-        return self._constant(light, strength)
-
-    def _warn(self, light: Any, node: Any, what: str) -> None:
-        sentence = f'light "{name_of(light)}", node "{name_of(node)}" ({node.bl_label}): {what}'
-        reporting.warn(self._engine, sentence)
-
-
-def _color(value: Any) -> Color:
-    if isinstance(value, float | int):
-        return (float(value), float(value), float(value))
-    return (float(value[0]), float(value[1]), float(value[2]))
+    @staticmethod
+    def _uneven(owner: str, surface: Any) -> str:
+        """What is said where the nodes' light turns out to vary over the lamp."""
+        feeding = nodes.source(surface)
+        found = feeding and nodes.find_upstream(feeding.node, VARYING)
+        where = f', node "{name_of(found)}" ({found.bl_label})' if found else ""
+        return f"{owner}{where}: what varies over a light is not supported yet, its middle counts"
 
 
 def _is_portal(light: Any) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..passes import value_columns
-from ..scene_data import MaterialData, Materials, ProgramData, SurfaceData
+from ..scene_data import MaterialData, Materials, ProgramData
 from .aovs import AovReader
 from .names import name_of
 from .shader.nodes_coordinates import STEPS
@@ -25,7 +25,8 @@ class MaterialExporter:
         self._around = surroundings_of(scene)
         self._override = view_layer.material_override
         self._materials = materials
-        self._aovs = AovReader(engine, value_columns(view_layer))
+        self._aovs = AovReader(engine, value_columns(view_layer), self._around)
+        materials.value_count = self._aovs.value_count
         self._attributes: list[frozenset[str]] = []  # of each material
         self.asks_random = False  # whether any material so far has another look by instance
         self._index: dict[int, int] = {}  # of materials by address; 0: no material
@@ -61,14 +62,14 @@ class MaterialExporter:
         index = self._index.get(pointer)
         if index is None:
             index = self._index[pointer] = len(self._materials.materials)
-            values = self._aovs.values_of(material)
             surface = export_surface(self._engine, material, self._look, self._around)
-            self._attributes.append(_attributes(surface))
-            self.asks_random |= any(_asks_random(p) for p in surface.programs())
-            self._materials.materials.append(
-                MaterialData(NO_MATERIAL, 0, values, surface) if material is None
-                else MaterialData(name_of(material), material.pass_index, values, surface)
-            )  # fmt: skip
+            data = MaterialData(NO_MATERIAL, 0, surface)
+            if material is not None:
+                values = self._aovs.of_material(material)
+                data = MaterialData(name_of(material), material.pass_index, surface, values)
+            self._attributes.append(_attributes(data))
+            self.asks_random |= any(_asks_random(p) for p in data.programs())
+            self._materials.materials.append(data)
         return index
 
 
@@ -76,11 +77,11 @@ def _asks_random(program: ProgramData) -> bool:
     return any(op.op == "input" and op.name == "object_random" for op in program.ops)
 
 
-def _attributes(surface: SurfaceData) -> frozenset[str]:
+def _attributes(material: MaterialData) -> frozenset[str]:
     """What of a mesh the programs read; steps aside follow from the same arrays. The Tangent of
     Geometry nodes lies around generated coordinates."""
     names = set()
-    for op in (op for program in surface.programs() for op in program.ops):
+    for op in (op for program in material.programs() for op in program.ops):
         if op.op == "attribute":
             way, _, rest = op.name.partition(":")
             names.add(rest if way in STEPS else op.name)

@@ -31,6 +31,21 @@ def bounces(settings: Any) -> int:
     return int(settings.bounces)
 
 
+def fast_gi(scene: Any) -> dict[str, Any]:
+    """As in Cycles the world has factor and distance, and without one there is none of it."""
+    settings = scene.komorebi
+    if scene.world is None:
+        return {"use_fast_gi": False}
+    ambient = scene.world.light_settings
+    return {
+        "use_fast_gi": settings.use_fast_gi,
+        "fast_gi_method": settings.fast_gi_method,
+        "fast_gi_bounces": settings.ao_bounces_render,
+        "fast_gi_distance": max(ambient.distance, 0.0),
+        "fast_gi_factor": max(ambient.ao_factor, 0.0),
+    }
+
+
 def export_settings(
     scene: Any, view_layer: Any, passes: list[Pass], region: tuple[int, int, int, int]
 ) -> dict[str, Any]:
@@ -58,6 +73,8 @@ def export_settings(
         "bounces": bounces(settings),
         "sample_clamp_direct": settings.sample_clamp_direct,
         "sample_clamp_indirect": settings.sample_clamp_indirect,
+        "world_max_bounces": compat.max_bounces(scene.world if settings.sky == "SCENE" else None),
+        **fast_gi(scene),
         "environment_sampling": settings.environment_sampling,
         "pixel_filter": settings.pixel_filter,
         "filter_width": settings.filter_width,

@@ -16,6 +16,14 @@ def warn_scene(engine: Any, scene: Any) -> None:
 
 def warn_object(engine: Any, scene: Any, original: Any) -> None:
     """Warnings for an object that renders."""
+    settings = scene.komorebi
+    replaces = settings.use_fast_gi and settings.fast_gi_method == "REPLACE"
+    if replaces and settings.method == "WORLD_LIGHT" and compat.has_own_ao_distance(original):
+        reporting.warn(
+            engine,
+            f'object "{name_of(original)}": an AO Distance of its own is not supported yet, the '
+            "world's counts",
+        )
     if compat.has_adaptive_subdivision(scene, original):
         levels = original.modifiers[-1].render_levels
         reporting.warn(

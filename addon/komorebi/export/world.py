@@ -47,6 +47,7 @@ class _WorldReader:
     def __init__(self, engine: Any, world: Any, tree: Any, around: Surroundings) -> None:
         self._around = around
         self._engine = engine
+        self._world = world
         self._owner = f'world "{name_of(world)}"'
         self._tree = tree
 
@@ -68,6 +69,7 @@ class _WorldReader:
             shown = self._program(camera, surface) if light.heeds_ray else program
             data.camera_program = shown
             data.suns = [self._sun(i, sun, surface) for i, sun in enumerate(light.suns)]
+            data.max_bounces = compat.max_bounces(self._world)
         elif light.heeds_ray and not _same_map(data, read_map(camera, surface)):
             data.camera_program = self._program(camera, surface)
         if not lights and seen and data.camera_program is None:

@@ -18,6 +18,7 @@ from . import (
     render,
     sampling,
     view_layer,
+    viewport,
     world,
 )
 from .base import ENGINE_ID
@@ -28,6 +29,7 @@ CLASSES = tuple(
         sampling,
         light_paths,
         render,
+        viewport,
         view_layer,
         camera,
         light,

@@ -45,6 +45,7 @@ class KOMOREBI_LIGHT_PT_light(KomorebiPanel, bpy.types.Panel):
             column.prop(cycles(light), "cast_shadow")
         else:
             column.prop(light, "use_shadow", text="Cast Shadow")
+        draw_moved(column, "max_bounces", cycles(light))
 
     def _draw_temperature(self, column: Any, light: Any) -> None:
         if owner_of("use_temperature", light):

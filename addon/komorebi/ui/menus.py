@@ -9,6 +9,7 @@ import bpy
 from . import node_menu
 from .base import ENGINE_ID
 from .sampling import draw_method
+from .viewport import draw_pause
 
 
 def draw_indirect_only(self: Any, context: Any) -> None:
@@ -20,6 +21,7 @@ def draw_indirect_only(self: Any, context: Any) -> None:
 
 ADDITIONS = (
     ("RENDER_PT_context", draw_method),
+    ("VIEW3D_HT_header", draw_pause),
     ("OUTLINER_MT_collection_view_layer", draw_indirect_only),
 )
 

@@ -33,6 +33,20 @@ class KOMOREBI_WORLD_PT_ambient_occlusion(WorldPanel, bpy.types.Panel):
         self.column().prop(context.world.light_settings, "distance")
 
 
+class KOMOREBI_WORLD_PT_settings(WorldPanel, bpy.types.Panel):
+    """What counts of Cycles' settings of a world."""
+
+    bl_label = "Settings"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return super().poll(context) and cycles(context.world) is not None
+
+    def draw(self, context: Any) -> None:
+        self.column().prop(context.world.cycles, "max_bounces")
+
+
 class KOMOREBI_WORLD_PT_mist(WorldPanel, bpy.types.Panel):
     bl_label = "Mist Pass"
     bl_options = {"DEFAULT_CLOSED"}
@@ -72,4 +86,5 @@ CLASSES = (
     KOMOREBI_WORLD_PT_ambient_occlusion,
     KOMOREBI_WORLD_PT_mist,
     KOMOREBI_WORLD_PT_ray_visibility,
+    KOMOREBI_WORLD_PT_settings,
 )

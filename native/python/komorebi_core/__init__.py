@@ -6,6 +6,7 @@ own their memory. Long calls release the GIL. Nothing here knows about Blender.
 
 from ._komorebi import (
     AUTOMATIC_LIGHT_SAMPLES,
+    Camera,
     Cancel,
     Cancelled,
     Environment,
@@ -31,6 +32,7 @@ from ._komorebi import (
 
 __all__ = [
     "AUTOMATIC_LIGHT_SAMPLES",
+    "Camera",
     "Cancel",
     "Cancelled",
     "Environment",

@@ -44,7 +44,7 @@ def owen_scramble(cycles: Any) -> None:
     raise RuntimeError("this Cycles has no sampling pattern that a seed changes")
 
 
-def set_cycles(scene: Any, samples: int, bounces: int, materials: bool) -> None:
+def set_cycles(scene: Any, samples: int, bounces: int) -> None:
     """Cycles on the CPU: diffuse bounces alone, box filter, and nothing that biases or stops early."""
     if not hasattr(scene, "cycles"):
         raise RuntimeError(
@@ -69,7 +69,7 @@ def set_cycles(scene: Any, samples: int, bounces: int, materials: bool) -> None:
         glossy_bounces=0,
         transmission_bounces=bounces,  # what comes through translucent surfaces
         volume_bounces=0,
-        transparent_max_bounces=1024 if materials else 0,
+        transparent_max_bounces=1024,  # paths that pass through a lamp count it too
         feature_set="SUPPORTED",
         shading_system=False,
         film_exposure=1.0,
@@ -108,11 +108,25 @@ def set_komorebi(scene: Any, samples: int, mode: str, bounces: int, materials: b
         scene.komorebi,
         film_exposure=1.0,
         sky="SCENE",
+        use_fast_gi=False,
         surface="MATERIAL" if materials else "CLAY",
         use_adaptive_sampling=False,
         time_limit=0.0,
         use_denoising=False,
     )
+
+
+def set_fast_gi(scene: Any, job: dict[str, Any]) -> None:
+    """The approximation in either engine, as the job says; the world has what both read."""
+    if job["fast_gi"] is None:
+        return
+    holder = scene.cycles if job["engine"] == "CYCLES" else scene.komorebi
+    require(
+        holder, use_fast_gi=True, fast_gi_method=job["fast_gi"].upper(),
+        ao_bounces_render=job["ao_bounces"],
+    )  # fmt: skip
+    if job["ao_distance"] is not None:
+        require(scene.world.light_settings, distance=job["ao_distance"])
 
 
 def set_seed(scene: Any, engine: str, seed: int) -> None:

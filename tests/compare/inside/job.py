@@ -5,7 +5,7 @@ stores the pixels.
     PYTHON_WITH_BPY tests/compare/inside/job.py -- JOB.json
 
 JOB.json holds: file, engine, mode, samples, seeds, view_layer, flat, longest, world_image, frame,
-camera, stereo, bounces, materials, out. Written into the folder `out`: pixels.npy, float32 [seed, row, column, RGBA], row 0 at the
+camera, stereo, bounces, materials, fast_gi, ao_bounces, ao_distance, out. Written into the folder `out`: pixels.npy, float32 [seed, row, column, RGBA], row 0 at the
 bottom, premultiplied, scene linear; and bent.npy, bool [row, column], from Cycles up to 3.x (see
 bent.py); and report.json: notes (what was changed), seconds a picture, releases.
 """

@@ -61,7 +61,8 @@ def prepare(job: dict[str, Any]) -> tuple[Any, list[str]]:
     if job["stereo"] is not None:
         camera.both_eyes(scene, job["stereo"] == "spherical")
     if job["engine"] == "CYCLES":
-        engines.set_cycles(scene, samples, job["bounces"], job["materials"])
+        engines.set_cycles(scene, samples, job["bounces"])
     else:
         engines.set_komorebi(scene, samples, job["mode"], job["bounces"], job["materials"])
+    engines.set_fast_gi(scene, job)
     return scene, layer, notes

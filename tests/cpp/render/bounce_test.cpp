@@ -9,37 +9,12 @@
 #include "core/surface_point.h"
 #include "render/batch.h"
 #include "render/one_ray.h"
-#include "support/scenes.h"
+#include "support/cavity.h"
 
 namespace komorebi::testing {
 namespace {
 
 constexpr double kPi = glm::pi<double>();
-
-/// A hollow sphere from which a cap is cut off at the top, of rings [cut, n); and the share of its
-/// area that is missing.
-struct Cavity {
-  std::shared_ptr<const Mesh> mesh;
-  double open;
-};
-Cavity cavity(int n, int cut) {
-  Polygons all = sphere(n, Vec3d(0), 1.0, false), rest;
-  rest.vtx2xyz = all.vtx2xyz;
-  const auto first = static_cast<std::size_t>(8 * n * cut);  // corners: 4 of 2n faces a ring
-  rest.corner2vtx.assign(all.corner2vtx.begin() + static_cast<std::ptrdiff_t>(first),
-                         all.corner2vtx.end());
-  for (std::size_t c = 4; c <= rest.corner2vtx.size(); c += 4) {
-    rest.face_offsets.push_back(static_cast<std::int32_t>(c));
-  }
-  return {rest.mesh(), 0.5 - 0.5 * std::cos(kPi * cut / n)};
-}
-
-/// Light in a cavity after k bounces: each sends back what it gets but for what leaves.
-double cavity_light(double albedo, double first_albedo, double open, std::uint32_t k) {
-  double sum = 0.0, share = 1.0;
-  for (std::uint32_t i = 0; i <= k; ++i, share *= albedo * (1.0 - open)) sum += share;
-  return first_albedo * open * sum;
-}
 
 void expect_cavity(Settings settings, double albedo, std::uint32_t bounces) {
   const Cavity hollow = cavity(64, 16);
@@ -170,6 +145,49 @@ TEST(Bounces, UnderAMapAgreeWithBruteForce) {
       EXPECT_NEAR(e.mean, truth.mean, 4.0 * std::hypot(e.error, truth.error))
           << bounces << " bounces";
       EXPECT_LT(std::hypot(e.error, truth.error), 0.02 * truth.mean);
+    }
+  }
+}
+
+/// The probe's pixels, with or without the light that scattered rays bring where they leave.
+Estimate with_sky_shared(const Scene& scene, const Settings& settings, bool shares) {
+  const FilterTable filter(settings.pixel_filter, settings.filter_width);
+  RenderContext context = make_context(scene, settings, filter.view());
+  EXPECT_TRUE(context.shares_light);
+  context.shares_light = shares;
+  context.passes = {};
+  context.light_samples = 1;
+  std::vector<PixelPlace> pixels;
+  for (std::uint32_t i = 0; i < 256; ++i) pixels.push_back({i % 16, i / 16});
+  std::vector<Vec3> radiance(settings.samples * pixels.size());
+  EXPECT_TRUE(BatchIntegrator(context).sample(pixels, settings.samples, radiance.data(), Cancel()));
+  std::vector<float> means(4 * pixels.size());
+  for (std::size_t i = 0; i < radiance.size(); ++i) {
+    means[i / settings.samples * 4] += radiance[i].x / static_cast<float>(settings.samples);
+  }
+  return estimate(means);
+}
+
+TEST(Bounces, ShareTheSkyWithLightRaysWithoutBias) {
+  const auto scene = corner();
+  for (const auto method : {Method::kWorldLight, Method::kAmbientOcclusion}) {
+    for (const auto sampling : {EnvironmentSampling::kProduct, EnvironmentSampling::kMis,
+                                EnvironmentSampling::kCosine, EnvironmentSampling::kEnvironment}) {
+      Settings settings;
+      settings.method = method;
+      settings.environment_sampling = sampling;
+      const bool uniform = sampling == EnvironmentSampling::kEnvironment;
+      settings.ao_sampling = uniform ? AoSampling::kUniform : AoSampling::kCosine;
+      settings.ao_distance = 3.0f;
+      settings.sample_clamp_indirect = 0.0f;
+      settings.samples = 256;
+      settings.bounces = 4;
+      const Estimate apart = with_sky_shared(*scene, settings, false);
+      const Estimate shared = with_sky_shared(*scene, settings, true);
+      EXPECT_NE(shared.mean, apart.mean);
+      EXPECT_NEAR(shared.mean, apart.mean, 4.0 * std::hypot(shared.error, apart.error));
+      EXPECT_LT(shared.error, 1.1 * apart.error);  // which is itself known to 4 %
+      EXPECT_LT(apart.error, 0.02 * apart.mean);
     }
   }
 }

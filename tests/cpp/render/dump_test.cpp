@@ -57,6 +57,12 @@ class Dump : public ::testing::Test {
     s.samples = 4;
     s.clay_color = Vec3(0.7f, 0.6f, 0.5f);
     s.bounces = 2;
+    s.world_max_bounces = 1;
+    s.use_fast_gi = true;
+    s.fast_gi_method = FastGiMethod::kAdd;
+    s.fast_gi_bounces = 5;
+    s.fast_gi_distance = 0.75f;
+    s.fast_gi_factor = 0.5f;
     s.sample_clamp_direct = 3.0f;
     s.sample_clamp_indirect = 0.25f;
     s.has_region = true;

@@ -88,6 +88,25 @@ TEST_P(Equality, BatchesAgreeWithOneRayAfterAnotherThroughBounces) {
   expect_batches_as_one_ray(moving_scene(), settings_);
 }
 
+TEST_P(Equality, BatchesAgreeWithOneRayByFastGi) {
+  settings_.samples = 2;
+  settings_.bounces = 3;
+  settings_.use_fast_gi = true;
+  settings_.fast_gi_distance = 0.8f;
+  settings_.fast_gi_factor = 0.7f;
+  const auto expect_alike = [&] {
+    expect_batches_as_one_ray(telling_scene(), settings_);
+    expect_batches_as_one_ray(telling_scene(nullptr, {}, true), settings_);
+  };
+  for (settings_.fast_gi_bounces = 1; settings_.fast_gi_bounces <= 3; ++settings_.fast_gi_bounces) {
+    expect_alike();
+  }
+  settings_.fast_gi_method = FastGiMethod::kAdd;
+  expect_alike();
+  settings_.world_max_bounces = 1;
+  expect_alike();
+}
+
 TEST_P(Equality, ThroughBouncesThreadsTilesBuildersAndInstructionSetsDoNotShow) {
   settings_.bounces = 4;
   const auto scene = busy_scene();

@@ -109,6 +109,73 @@ TEST(LampLight, OfManyIsTheSum) {
   expect_irradiance(lit(lamps), sum, 2e-4, lamp_settings(512));
 }
 
+TEST(LampLight, FallsOffAsItsFalloffSays) {
+  // Of a point the law itself; a disk overhead has points at distances √(h² + r²).
+  const double d = 2.5, radius = 1.5, h = 2.0;
+  for (const double power : {0.0, 1.0, 2.0}) {
+    for (const double smooth : {0.0, 3.0}) {
+      const auto falloff = [&](double at) {
+        return std::pow(at, power) * at * at / (at * at + smooth);
+      };
+      LampInput point = lamp_at(LampKind::kPoint, 5.0, {1.5, 0, 2});
+      point.falloff_power = power;
+      point.falloff_smooth = smooth;
+      expect_irradiance(lit({point}), 5.0 * 2.0 / std::pow(d, 3) * falloff(d));
+      LampInput plate = lamp_at(LampKind::kEllipse, 5.0, {0, 0, h});
+      plate.size_u = plate.size_v = 2.0 * radius;
+      plate.falloff_power = power;
+      plate.falloff_smooth = smooth;
+      double sum = 0.0;
+      constexpr int kSteps = 10000;
+      for (int i = 0; i < kSteps; ++i) {
+        const double r = radius * (i + 0.5) / kSteps, square = r * r + h * h;
+        sum += falloff(std::sqrt(square)) * h * h / (square * square) * 2.0 * kPi * r * radius /
+               kSteps;
+      }
+      expect_irradiance(lit({plate}), 5.0 * sum);
+    }
+  }
+  LampInput sun = lamp_at(LampKind::kDirection, 3.0, Vec3d(0.0));
+  sun.falloff_power = 2.0;
+  expect_irradiance(lit({sun}), 3.0);
+}
+
+TEST(LampLight, OfManyWithAFalloffIsTheSum) {
+  double sum = 0.0;
+  std::vector<LampInput> lamps;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3d place(std::sin(2.4 * i) * 0.1 * i, std::cos(2.4 * i) * 0.1 * i, 0.5 + i % 7);
+    lamps.push_back(lamp_at(LampKind::kPoint, 0.1 + i % 3, place));
+    lamps.back().falloff_power = i % 3;
+    lamps.back().falloff_smooth = i % 2;
+    const double d = glm::length(place);
+    sum += (0.1 + i % 3) * place.z / std::pow(d, 3) * std::pow(d, i % 3) * d * d / (d * d + i % 2);
+  }
+  expect_irradiance(lit(lamps), sum, 2e-4, lamp_settings(512));
+}
+
+TEST(LampLight, EndsAfterItsBounces) {
+  // A wall beside the point in view, which a lamp lights that the point does not see.
+  const auto wall = quad({1, -2, 0}, {0, 4, 0}, {0, 0, 2}).mesh();
+  const auto screen = quad({0.3, -2, 0.4}, {0, 4, 0}, {0, 0, 3}).mesh();
+  LampInput lamp = lamp_at(LampKind::kPoint, 5.0, {0.6, 0, 3});
+  Settings settings = lamp_settings(64);
+  const auto seen = [&](std::uint32_t bounces, double most, std::size_t lamps) {
+    settings.bounces = bounces;
+    lamp.max_bounces = most;
+    return render(lit(std::vector<LampInput>(lamps, lamp), {{wall}, {screen}}), settings);
+  };
+  for (const std::size_t lamps : {1u, 20u}) {  // 20 in a tree
+    const auto once = seen(1, 1024.0, lamps), twice = seen(2, 1024.0, lamps);
+    EXPECT_EQ(estimate(seen(2, 0.0, lamps)).mean, 0.0);
+    EXPECT_GT(estimate(once).mean, 0.0);
+    EXPECT_GT(estimate(twice).mean, 1.05 * estimate(once).mean);
+    EXPECT_EQ(seen(1, 1.0, lamps), once);
+    EXPECT_EQ(seen(2, 1.0, lamps), once);
+    EXPECT_EQ(seen(2, 2.0, lamps), twice);
+  }
+}
+
 TEST(LampLight, AmbientOcclusionHasNone) {
   Settings settings = lamp_settings(4);
   settings.method = Method::kAmbientOcclusion;

@@ -314,7 +314,7 @@ TEST(Lamp, IsChosenAsOftenAsItsProbabilitySays) {
     constexpr int kDraws = 200000;
     for (int i = 0; i < kDraws; ++i) {
       const LampChoice choice =
-          choose_lamp(lamps, Vec3(0.1f), n, random.next().x * 2.3283064365386963e-10);
+          choose_lamp(lamps, Vec3(0.1f), n, 0, random.next().x * 2.3283064365386963e-10);
       if (choice.lamp == kNone) continue;  // a branch of the tree that turned out to be all below
       ASSERT_LT(choice.lamp, lamps.count);
       ASSERT_GE(choice.u, 0.0f);

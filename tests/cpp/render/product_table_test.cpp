@@ -96,8 +96,31 @@ TEST(ProductTable, DensityIsThatOfTheDrawnPatch) {
                          detail::patch_probability(e, at.patch.row, at.patch.column) *
                          patch_share(e, p, bin, at.patch.row, at.patch.column);
       ASSERT_NEAR(double{s.pdf} / pdf, 1.0, 5e-3);
+      ASSERT_NEAR(product_pdf(e, p, normal, s.direction), pdf, 1e-6 * pdf);
       const Vec3 radiance = environment_radiance(e, s.direction);
       ASSERT_NEAR(luminance(s.radiance), luminance(radiance), 2e-3f * (1.0f + luminance(radiance)));
+    }
+  }
+}
+
+/// Of a density that is made of any direction it has to be found that the directions which it was
+/// not drawn for have it too: all of them together are drawn for sure.
+TEST(ProductTable, DensityOfDirectionsComesToOne) {
+  const Mat3d turn(glm::dvec3(0.36, 0.48, -0.8), glm::dvec3(-0.8, 0.6, 0.0),
+                   glm::dvec3(0.48, 0.64, 0.6));
+  for (const auto& [width, height] : {std::pair{64u, 32u}, {150u, 70u}, {13u, 7u}, {1u, 2u}}) {
+    const Environment map = testing::random_map(width, height, 14);
+    const EnvironmentView e = map.view(1.5, turn);
+    const ProductView p = map.product_table().view();
+    constexpr std::uint32_t kSide = 512;  // equal areas
+    for (const Vec3& normal : some_normals(10, 15)) {
+      double sum = 0.0;
+      for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+        const Vec2 u((static_cast<float>(i % kSide) + 0.5f) / kSide,
+                     (static_cast<float>(i / kSide) + 0.5f) / kSide);
+        sum += double{product_pdf(e, p, normal, uniform_sphere(u))};
+      }
+      EXPECT_NEAR(sum * 4.0 * kPi / (kSide * kSide), 1.0, 0.02) << width;
     }
   }
 }
@@ -173,6 +196,8 @@ TEST(ProductTable, NoLightNoSample) {
   const Environment map("spot", 64, 32, texels);
   const auto down = sample_product(map.view(), map.product_table().view(), Vec3(0, 0, -1), {5, 7});
   EXPECT_EQ(down.pdf, 0.0f);
+  EXPECT_EQ(product_pdf(map.view(), map.product_table().view(), Vec3(0, 0, -1), Vec3(0, 0, 1)),
+            0.0f);
   const auto up = sample_product(map.view(), map.product_table().view(), Vec3(0, 0, 1), {5, 7});
   EXPECT_GT(up.pdf, 0.0f);
 }

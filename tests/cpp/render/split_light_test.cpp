@@ -17,8 +17,8 @@ struct Plate {
   Vec3d low, size;
   std::uint32_t mask, flags = 0;
 
-  bool hides(const Vec3d& direction) const {  // from the origin
-    if (!(direction.z > 0.0)) return false;
+  bool hides(const Vec3d& direction, double distance) const {  // from the origin
+    if (!(direction.z * distance > low.z)) return false;
     const Vec3d at = direction * (low.z / direction.z) - low;
     return at.x > 0.0 && at.x < size.x && at.y > 0.0 && at.y < size.y;
   }
@@ -53,9 +53,12 @@ std::shared_ptr<Scene> floor_under(const std::vector<Plate>& plates, std::uint32
   return committed(scene);
 }
 
+constexpr double kFar = 1e9;
+
 /// The light of red that the two kinds of rays bring together: each weighted by the power heuristic
-/// over its own density and the other's.
-double light_under(const std::vector<Plate>& plates) {
+/// over its own density and the other's. Those sampled by the surface find nothing beyond
+/// `distance`, and of the light a part `factor` counts.
+double light_under(const std::vector<Plate>& plates, double distance = kFar, double factor = 1.0) {
   const auto mean = [](const Vec3d& rgb) { return (rgb.x + rgb.y + rgb.z) / 3.0; };
   const EnvironmentView sky = map()->view(0.7);
   const double flux =
@@ -68,10 +71,11 @@ double light_under(const std::vector<Plate>& plates) {
     for (const std::uint32_t kind : {kMaskDiffuse, kMaskShadow}) {
       bool hidden = false;
       for (const Plate& plate : plates) {
-        hidden = hidden || ((plate.mask & kind) != 0 && plate.hides(direction));
+        hidden = hidden || ((plate.mask & kind) != 0 &&
+                            plate.hides(direction, kind == kMaskDiffuse ? distance : kFar));
       }
       const double own = kind == kMaskDiffuse ? of_surface : of_map;
-      if (!hidden) found += own * own / squares;
+      if (!hidden) found += own * own / squares * (kind == kMaskDiffuse ? factor : 1.0);
     }
     return found * l.x * direction.z;
   });
@@ -90,11 +94,15 @@ Settings world_light() {
 
 class SplitLight : public ::testing::TestWithParam<EnvironmentSampling> {
  protected:
-  void expect_quadrature(const std::vector<Plate>& plates) const {
+  void expect_quadrature(const std::vector<Plate>& plates, double distance = kFar,
+                         double factor = 1.0) const {
     Settings settings = world_light();
     settings.environment_sampling = GetParam();
+    settings.use_fast_gi = distance < kFar;
+    settings.fast_gi_distance = static_cast<float>(distance);
+    settings.fast_gi_factor = static_cast<float>(factor);
     const Estimate e = estimate(render(floor_under(plates), settings));
-    const double exact = light_under(plates);
+    const double exact = light_under(plates, distance, factor);
     EXPECT_NEAR(e.mean, exact, 4.0 * e.error + 1e-3 * exact);
     EXPECT_LT(e.error, 0.01 * exact);
   }
@@ -110,6 +118,18 @@ TEST_P(SplitLight, OfThingsThatOnlyCastShadow) {
 
 TEST_P(SplitLight, OfBothOverEachOther) {
   expect_quadrature({kForDiffuse, kForShadow});
+}
+
+TEST_P(SplitLight, ThatEndsInAmbientOcclusion) {
+  Plate low = kForDiffuse, high = kForShadow;
+  low.mask = high.mask = kMaskAll;
+  const double all = light_under({low, high});
+  for (const double distance : {0.4, 0.7, 1.0}) {
+    EXPECT_GT(light_under({low, high}, distance), 1.05 * all);
+    expect_quadrature({low, high}, distance);
+  }
+  expect_quadrature({low, high}, 0.7, 0.5);
+  expect_quadrature({low, kForDiffuse, kForShadow}, 0.9, 2.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sampling, SplitLight,

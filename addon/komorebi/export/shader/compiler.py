@@ -172,7 +172,7 @@ class Compiler:
         outer = next((s for s in group.inputs if s.identifier == feeding.identifier), None)
         if outer is None:
             return None
-        with self._within(rest):
+        with self.within(rest):
             found = self._source(outer)
             if found is not None:
                 return found
@@ -196,7 +196,7 @@ class Compiler:
             return None
         self._open.add(key)
         try:
-            with self._within((*self._groups, group)):
+            with self.within((*self._groups, group)):
                 found = self._source(inner)
                 if found is None:
                     return None if inner.type == "SHADER" else (self._default(inner), inner.type)
@@ -269,7 +269,8 @@ class Compiler:
         return tuple(group.as_pointer() for group in self._groups)
 
     @contextmanager
-    def _within(self, groups: tuple[Any, ...]) -> Iterator[None]:
+    def within(self, groups: tuple[Any, ...]) -> Iterator[None]:
+        """What is compiled meanwhile is inside of these group nodes, the outermost first."""
         before, self._groups = self._groups, groups
         try:
             yield

@@ -1,0 +1,89 @@
+# mypy: disable-error-code="misc"
+"""The rendered viewport: its samples and pixels, and what its shading popover offers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+from .base import ENGINE_ID, KomorebiPanel
+
+
+class KOMOREBI_RENDER_PT_sampling_viewport(KomorebiPanel, bpy.types.Panel):
+    bl_label = "Viewport"
+    bl_parent_id = "KOMOREBI_RENDER_PT_sampling"
+
+    def draw(self, context: Any) -> None:
+        self.column().prop(context.scene.komorebi, "preview_samples", text="Samples")
+
+
+class KOMOREBI_RENDER_PT_performance_viewport(KomorebiPanel, bpy.types.Panel):
+    bl_label = "Viewport"
+    bl_parent_id = "KOMOREBI_RENDER_PT_performance"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        self.column().prop(context.scene.render, "preview_pixel_size", text="Pixel Size")
+
+
+class ShadingPanel:
+    """Part of the popover beside a viewport's shading modes."""
+
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "HEADER"
+    bl_label = ""
+    bl_parent_id = "VIEW3D_PT_shading"
+    COMPAT_ENGINES = {ENGINE_ID}
+
+    layout: Any
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        shading = context.space_data.shading
+        return context.engine in cls.COMPAT_ENGINES and shading.type == "RENDERED"
+
+
+class KOMOREBI_VIEW3D_PT_shading_lighting(ShadingPanel, bpy.types.Panel):
+    bl_label = "Lighting"
+
+    def draw(self, context: Any) -> None:
+        shading = context.space_data.shading
+        column = self.layout.column()
+        column.prop(shading, "use_scene_lights_render")
+        column.prop(shading, "use_scene_world_render")
+        if shading.use_scene_world_render:
+            return
+        row = self.layout.row()
+        picture = row.column().row()
+        picture.scale_y = 0.6
+        picture.template_icon_view(shading, "studio_light", scale_popup=3)
+        row.operator("preferences.studiolight_show", emboss=False, text="", icon="PREFERENCES")
+        column = self.layout.column()
+        column.prop(shading, "studiolight_rotate_z", text="Rotation")
+        column.prop(shading, "studiolight_intensity")
+        column.prop(shading, "studiolight_background_alpha")
+
+
+class KOMOREBI_VIEW3D_PT_shading_render_pass(ShadingPanel, bpy.types.Panel):
+    bl_label = "Render Pass"
+
+    def draw(self, context: Any) -> None:
+        self.layout.prop(context.space_data.shading.komorebi, "render_pass", text="")
+
+
+def draw_pause(self: Any, context: Any) -> None:
+    """The button in a viewport's header that holds its picture."""
+    if context.engine != ENGINE_ID or context.space_data.shading.type != "RENDERED":
+        return
+    settings = context.scene.komorebi
+    icon = "PLAY" if settings.preview_pause else "PAUSE"
+    self.layout.prop(settings, "preview_pause", icon=icon, text="")
+
+
+CLASSES = (
+    KOMOREBI_RENDER_PT_sampling_viewport,
+    KOMOREBI_RENDER_PT_performance_viewport,
+    KOMOREBI_VIEW3D_PT_shading_lighting,
+    KOMOREBI_VIEW3D_PT_shading_render_pass,
+)

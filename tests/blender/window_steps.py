@@ -1,0 +1,87 @@
+"""Steps in a Blender with a window: a generator that yields how long Blender may go on meanwhile.
+
+Used inside that Blender; test_viewport.py starts it. A failed step ends Blender with code 3.
+"""
+
+import os
+import sys
+import time
+import traceback
+
+import bpy
+import numpy as np
+
+
+def start(steps):
+    """Runs the generator `steps` from a timer, then quits; "DONE" is what a good end says."""
+
+    def tick():
+        try:
+            return next(steps)
+        except StopIteration:
+            print("DONE", flush=True)
+            bpy.ops.wm.quit_blender()
+        except BaseException:
+            traceback.print_exc()
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(3)  # an exception in a timer does not end Blender
+        return None
+
+    bpy.app.timers.register(tick, first_interval=0.5, persistent=True)
+
+
+def view():
+    """What to override the context by; looked up each time, as full screens and files replace it."""
+    window = bpy.context.window_manager.windows[0]
+    area = next(a for a in window.screen.areas if a.type == "VIEW_3D")
+    region = next(r for r in area.regions if r.type == "WINDOW")
+    return {"window": window, "area": area, "region": region}
+
+
+def space():
+    return view()["area"].spaces.active
+
+
+def alone():
+    """The viewport fills the window, with nothing over the picture."""
+    with bpy.context.temp_override(**view()):
+        bpy.ops.screen.screen_full_area(use_hide_panels=True)
+    yield 0.3
+    shown = space()
+    shown.overlay.show_overlays = False
+    shown.show_gizmo = False
+    yield 0.1
+
+
+def viewports():
+    """The engine's live viewports, newest last."""
+    import gc
+
+    from komorebi.viewport.viewport import Viewport
+
+    return [o for o in gc.get_objects() if type(o) is Viewport]  # what is dead has no class to ask
+
+
+def finished(limit=60.0):
+    """Until the picture on the screen is done, its last sample drawn."""
+    end = time.monotonic() + limit
+    while time.monotonic() < end:
+        yield 0.05
+        alive = [v for v in viewports() if v.picture is not None]
+        if alive and all(v.is_done for v in alive):
+            yield 0.2
+            return
+    states = [(v.picture, v.error) for v in viewports()]
+    raise AssertionError(f"not finished: {states}, {space().shading.type}, {bpy.context.engine}")
+
+
+def screen(folder, name):
+    """What the window shows, [height, width, 3] from 0 to 1, row 0 at the bottom."""
+    path = os.path.join(folder, name + ".png")
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+        bpy.ops.screen.screenshot(filepath=path)
+    image = bpy.data.images.load(path)
+    pixels = np.array(image.pixels[:], np.float32).reshape(image.size[1], image.size[0], -1)
+    bpy.data.images.remove(image)
+    return pixels[:, :, :3]
