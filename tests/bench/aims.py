@@ -78,6 +78,9 @@ FAR, NEAR = ("ao:16",), ("ao:16:0.1",)
 AIMS: tuple[Aim, ...] = (
     ("whole picture at equal error / Cycles: white sky", "≥ 6×", "≥ 12×", lambda p: pictures(p, "-ao")),
     ("whole picture at equal error / Cycles: map", "≥ 10×", "≥ 30×", lambda p: pictures(p, "-map")),
+    ("whole picture at equal error / Cycles: pictures and cut-outs, direct", "≥ 6×", "≥ 12×", lambda p: pictures(p, "-textured")),
+    ("whole picture at equal error / Cycles: Sky Texture, direct", "≥ 6×", "≥ 12×", lambda p: pictures(p, "-sky")),
+    ("whole picture at equal error / Cycles: 4 bounces", "≥ 4×", "≥ 8×", lambda p: pictures(p, "-bounces")),
     ("24 views in one process / Cycles", "≥ 8×", "≥ 20×", views),
     ("LINEAR build, cold / Embree LOW", "≥ 2×", "≥ 4×", lambda p: builds(p, "LINEAR", "LOW")),
     ("SAH build, cold / Embree MEDIUM", "≥ 2×", "≥ 4×", lambda p: builds(p, "SAH", "MEDIUM")),

@@ -23,13 +23,18 @@ class Scene:
 
     name: str
     says: str
-    mode: str  # ao: white sky; world: the map
+    mode: str  # ao: white sky; world: the map; nodes: the file's world
     kind: str  # of make_scene.py, or "file"
     source: str  # below the shared data
     samples: int = 64  # Cycles', which set the error to be met
     views: int = 0
     size: tuple[int, int] = (1280, 720)
     bounces: int = 0
+    materials: bool = False  # the file's own, and its world where the mode is "nodes"
+
+    @property
+    def has_map(self) -> bool:
+        return self.mode == "world"
 
 
 SCENES = (
@@ -38,6 +43,9 @@ SCENES = (
     Scene("interior-ao", "sponza inside, white sky", "ao", "interior", "meshes/sponza_dabrovic.ply"),
     Scene("interior-map", "sponza inside, map", "world", "interior", "meshes/sponza_dabrovic.ply"),
     Scene("interior-bounces", "sponza inside, map, 4 bounces", "world", "interior", "meshes/sponza_dabrovic.ply", bounces=4),
+    Scene("leaves-textured", "a grove of pictures on cards, map", "world", "leaves", "meshes/dragon_vrip.ply.gz", 32, materials=True),
+    Scene("leaves-bounces", "the same, 4 bounces", "world", "leaves", "meshes/dragon_vrip.ply.gz", 32, bounces=4, materials=True),
+    Scene("dragon-sky", "dragon on tiles, Sky Texture with its sun", "nodes", "sky", "meshes/dragon_vrip.ply.gz", materials=True),
     Scene("instances-map", "10,000 instances of the dragon, map", "world", "instances", "meshes/dragon_vrip.ply.gz", 16),
     Scene("bmw-ao", "BMW, white sky", "ao", "file", "blends/bmw27_cpu.blend"),
     Scene("views-map", "24 views of the dragon, map, one process", "world", "dragon", "meshes/dragon_vrip.ply.gz", 32, 24, (512, 512)),

@@ -2,8 +2,9 @@
 
     PYTHON_WITH_BPY tests/bench/inside/make_scene.py -- KIND MESH.npz OUT.blend
 
-KIND is dragon (on a ground), interior (a hall seen from within) or instances (10,000 dragons, made
-by Blender's instancing on faces). MESH.npz holds positions float32 [V, 3], y up, and corners int32
+KIND is dragon (on a ground), interior (a hall seen from within), instances (10,000 dragons, made
+by Blender's instancing on faces), leaves (the dragon in a grove of cards with pictures of leaves) or
+sky (the dragon on tiles under a Sky Texture). MESH.npz holds positions float32 [V, 3], y up, and corners int32
 [T, 3].
 """
 
@@ -19,6 +20,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "blend_scenes"))
 
 from common import add_camera, add_rectangle, empty_scene, link, set_world
+from materials import leaf_color, tile_color
+from nodes import add, diffuse, material, mix, picture
 
 SIDE = 100  # instances along each side of the field
 SPACING = 2.6  # metres from one to the next
@@ -83,15 +86,90 @@ def instances(positions: np.ndarray, corners: np.ndarray) -> None:
     add_camera((0.0, -SIDE * SPACING / 2 - 4.0, 9.0), (0.0, -SIDE * SPACING / 2 + 14.0, 0.0))
 
 
+def with_picture(obj: Any, look: Any, repeat: float = 1.0) -> None:
+    """Each four-sided face shows the whole picture, `repeat` times."""
+    obj.data.materials.append(look)
+    corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32) * np.float32(repeat)
+    layer = obj.data.uv_layers.new(name="UVMap")
+    layer.data.foreach_set("uv", np.tile(corners, (len(obj.data.polygons), 1)).ravel())
+
+
+def tiles() -> Any:
+    image = picture("Tiles", 1024, tile_color)
+    return material("Tiled", lambda t: diffuse(t, add(t, "TexImage", image=image).outputs["Color"]))
+
+
+def leaf() -> Any:
+    """A leaf on a card, of which a part of the light comes through."""
+    cut = picture("Leaf", 512, leaf_color)
+
+    def build(tree: Any) -> Any:
+        texture = add(tree, "TexImage", image=cut)
+        color = texture.outputs["Color"]
+        through = add(tree, "BsdfTranslucent", {"Color": color}).outputs[0]
+        green = mix(tree, 0.4, diffuse(tree, color), through)
+        nothing = add(tree, "BsdfTransparent").outputs[0]
+        return mix(tree, texture.outputs["Alpha"], nothing, green)
+
+    return material("Leaf", build)
+
+
+def leaves(positions: np.ndarray, corners: np.ndarray) -> None:
+    """The dragon on tiles among 64 trees of 2,000 leaves."""
+    stone = mesh_object("Dragon", standing(positions, 1.44), corners)
+    stone.data.materials.append(material("Stone", lambda t: diffuse(t, (0.5, 0.45, 0.4))))
+    random = np.random.default_rng(2)
+    count = 2000
+    direction = random.normal(size=(count, 3))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    middle = direction * random.uniform(0.3, 1.0, (count, 1)) ** (1 / 3) * (1.3, 1.3, 1.1)
+    side = np.cross(direction, random.normal(size=(count, 3)))
+    side /= np.linalg.norm(side, axis=1, keepdims=True)
+    up = np.cross(side, direction) + 0.4 * direction
+    quad = np.stack([-side, side, side + 2 * up, -side + 2 * up], axis=1) * 0.09
+    points = (middle + np.array([0.0, 0.0, 2.6]))[:, None] + quad
+    tree = mesh_object("Tree", points.reshape(-1, 3), np.arange(4 * count).reshape(-1, 4))
+    with_picture(tree, leaf())
+    places = random.uniform(-9.0, 9.0, (200, 2))
+    places = [p for p in places if np.hypot(*p) > 1.8 and not (abs(p[0]) < 1.2 and p[1] < 0)][:64]
+    for number, place in enumerate(places):
+        copy = tree if number == 0 else link(bpy.data.objects.new("Tree", tree.data))
+        copy.location = (*place, random.uniform(-0.8, 0.2))
+        copy.rotation_euler = (0.0, 0.0, random.uniform(0.0, 6.28))
+    ground = add_rectangle("Ground", (-40.0, -40.0, 0.0), (80.0, 0.0, 0.0), (0.0, 80.0, 0.0))
+    with_picture(ground, tiles(), 20.0)
+    add_camera((1.0, -6.5, 2.2), (0.0, 0.0, 1.4), lens=35.0)
+
+
+def sky(positions: np.ndarray, corners: np.ndarray) -> None:
+    """The dragon on tiles in the evening, its world a Sky Texture with its sun."""
+    dragon(positions, corners)
+    with_picture(bpy.data.objects["Ground"], tiles(), 30.0)
+    bronze = material("Bronze", lambda t: diffuse(t, (0.45, 0.3, 0.2)))
+    bpy.data.objects["Dragon"].data.materials.append(bronze)
+
+
+def set_sky() -> None:
+    tree = set_world().node_tree
+    texture = tree.nodes.new("ShaderNodeTexSky")
+    texture.sky_type, texture.sun_elevation, texture.sun_rotation = "NISHITA", 0.5, 2.4
+    tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+    tree.nodes["Background"].inputs["Strength"].default_value = 0.1
+
+
 def main() -> None:
     """Make what the command line names."""
     kind, source, target = sys.argv[sys.argv.index("--") + 1 :]
     data = np.load(source)
     empty_scene(1280, 720)
-    {"dragon": dragon, "interior": interior, "instances": instances}[kind](
-        data["positions"], data["corners"]
-    )
-    set_world()
+    kinds = {
+        "dragon": dragon, "interior": interior, "instances": instances, "leaves": leaves, "sky": sky,
+    }  # fmt: skip
+    kinds[kind](data["positions"], data["corners"])
+    if kind == "sky":
+        set_sky()
+    else:
+        set_world()
     bpy.context.preferences.filepaths.save_version = 0
     bpy.ops.wm.save_as_mainfile(filepath=str(Path(target).resolve()), compress=False)
 
