@@ -12,7 +12,7 @@ DEFAULTS = {
     "environment_sampling": "PRODUCT", "pixel_filter": "BLACKMAN_HARRIS", "filter_width": 1.5,
     "use_progressive": True, "bounces": 2, "ao_indirect_bounces": 0, "sample_clamp_direct": 0.0,
     "sample_clamp_indirect": 10.0, "use_fast_gi": False, "fast_gi_method": "REPLACE",
-    "ao_bounces_render": 1,
+    "ao_bounces": 1, "ao_bounces_render": 1,
 }  # fmt: skip
 ITEMS = {
     "method": ["AMBIENT_OCCLUSION", "WORLD_LIGHT"],
