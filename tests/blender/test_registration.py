@@ -66,7 +66,7 @@ def test_blenders_panels_are_inherited():
     ours = {p.__name__ for p in panels() if "KOMOREBI" in getattr(p, "COMPAT_ENGINES", ())}
     for name in INHERITED:
         assert name in ours, name
-    for name in ("OBJECT_PT_visibility", "VIEWLAYER_PT_layer_passes", "DATA_PT_preview"):
+    for name in ("OBJECT_PT_visibility", "VIEWLAYER_PT_layer_passes", "DATA_PT_light"):
         assert name not in ours, name
 
 
