@@ -56,7 +56,7 @@ class LampExporter:
         light, emission = known
         if not any(emission.strength):
             return
-        matrix = np.array(instance.matrix_world, np.float64)
+        matrix = np.array(instance.matrix_world, np.float64, order="C")
         lamp = _lamp(light, emission.strength, matrix)
         if lamp is None:
             return
