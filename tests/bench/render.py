@@ -63,13 +63,15 @@ def render(
         "file": str(blend_file(scene)),
         "engine": engine,
         "mode": scene.mode,
-        "world_image": str(meshes.shared_file(MAP)) if scene.mode == "world" else None,
+        "world_image": str(meshes.shared_file(MAP))
+        if scene.mode == "world" and not scene.own_world
+        else None,
         "width": size[0],
         "height": size[1],
         "views": views,
         "bounces": scene.bounces,
         "lamps": False,
-        "materials": False,
+        "materials": scene.materials,
         "cycles": {},
         "komorebi": {},
         engine.lower(): settings or {},

@@ -114,6 +114,7 @@ def main() -> None:
         "stereo": None,
         "view_layer": None,
         "flat": False,
+        "fast_gi": None,
         "samples": 1,
         "longest": longest,
     }
