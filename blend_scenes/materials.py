@@ -21,7 +21,7 @@ def _floor(size: float, look: bpy.types.Material) -> bpy.types.Object:
     return floor
 
 
-def _tiles(u: float, v: float) -> tuple[float, ...]:
+def tile_color(u: float, v: float) -> tuple[float, ...]:
     light = (int(u * 8) + int(v * 8)) % 2
     return (0.8, 0.7, 0.5, 1.0) if light else (0.3, 0.25, 0.4, 1.0)
 
@@ -30,7 +30,7 @@ def colors() -> None:
     """Colours of every origin: plain, painted on corners, from pictures, by object, face and place;
     what light comes through."""
     empty_scene(240, 160)
-    tiles = picture("Tiles", 64, _tiles)
+    tiles = picture("Tiles", 64, tile_color)
     _floor(
         12.0,
         material("Tiled", lambda t: diffuse(t, add(t, "TexImage", image=tiles).outputs["Color"])),
@@ -117,7 +117,7 @@ def horizon() -> None:
     set_world((0.8, 0.9, 1.0))
 
 
-def _leaf(u: float, v: float) -> tuple[float, ...]:
+def leaf_color(u: float, v: float) -> tuple[float, ...]:
     """A pointed leaf with a rib, on nothing."""
     across = abs(u - 0.5)
     inside = across < 0.36 * math.sin(math.pi * min(max((v - 0.05) / 0.9, 0.0), 1.0)) ** 0.8
@@ -128,7 +128,7 @@ def _leaf(u: float, v: float) -> tuple[float, ...]:
 def leaves() -> None:
     """Leaves that are cut out of cards by a picture's alpha, and let light through: 400 of them."""
     empty_scene(240, 160)
-    cut = picture("Leaf", 64, _leaf)
+    cut = picture("Leaf", 64, leaf_color)
     _floor(9.0, material("Earth", lambda t: diffuse(t, (0.5, 0.4, 0.3))))
 
     def leaf(tree: Any) -> Any:

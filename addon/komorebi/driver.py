@@ -30,6 +30,7 @@ from .passes import Pass, enabled_cryptomattes, enabled_passes
 from .progress import Progress
 from .result import ResultWriter
 from .scene_data import CameraData, FloatArray, SceneData
+from .scene_settings import settings_of, suited
 from .unchanged import Unchanged
 from .views import active_views
 
@@ -64,6 +65,11 @@ class Frame:
 def export_frame(engine: Any, depsgraph: Any) -> Frame | None:
     """Blender's data → arrays, while Blender keeps its data locked."""
     core.load()  # fail before the work
+    with suited(engine):
+        return _export_frame(engine, depsgraph)
+
+
+def _export_frame(engine: Any, depsgraph: Any) -> Frame | None:
     scene = depsgraph.scene
     layer = name_of(depsgraph.view_layer)
     engine.update_stats("", f"{layer} | Exporting the scene")
@@ -83,7 +89,7 @@ def export_frame(engine: Any, depsgraph: Any) -> Frame | None:
     views = [View(name, camera) for name, camera in data.cameras.items()]
     mattes = _matte_names(data, enabled_cryptomattes(depsgraph.view_layer))
     # Ambient occlusion is no light.
-    exposure = scene.komorebi.film_exposure if settings["method"] == "WORLD_LIGHT" else 1.0
+    exposure = settings_of(scene).film_exposure if settings["method"] == "WORLD_LIGHT" else 1.0
     return Frame(layer, region, passes, settings, oidn, data, views, mattes, exposure)
 
 
@@ -114,7 +120,7 @@ def _matte_names(data: SceneData, mattes: list[str]) -> dict[str, list[str]]:
 
 
 def _denoiser(scene: Any) -> str:
-    if not scene.komorebi.use_denoising:
+    if not settings_of(scene).use_denoising:
         return ""
     library = oidn.find()
     if library.missing:  # now, not after an hour
@@ -172,7 +178,7 @@ def _render_view(engine: Any, frame: Frame, parts: native_scene.Parts, view: Vie
         return scene, native.Settings(tile_size=TILE_SIZE, **frame.settings)
 
     scene, settings = _native_work(engine, cancel, build)
-    if dump.write(scene, settings):
+    if not engine.is_preview and dump.write(scene, settings):
         return
     session = _native_work(engine, cancel, lambda: native.Session(scene, settings))
     writer = ResultWriter(

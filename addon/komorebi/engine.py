@@ -22,7 +22,7 @@ class KomorebiRenderEngine(bpy.types.RenderEngine):
 
     bl_idname = ENGINE_ID
     bl_label = "Komorebi"
-    bl_use_preview = False  # previews of materials and worlds are not made yet
+    bl_use_preview = True
     bl_use_postprocess = True  # the compositor and the sequencer go over the picture
     bl_use_image_save = True
     bl_use_custom_freestyle = False  # Blender draws strokes itself, else they come as a scene here

@@ -25,6 +25,9 @@ _break_sent = False
 
 def fail(engine: Any, depsgraph: Any, sentence: str) -> None:
     """Reports why the frame failed and sees to it that the process will not end in success."""
+    if engine.is_preview:
+        print(f"Komorebi: no preview: {sentence}", flush=True)
+        return
     engine.report({"ERROR"}, f"Komorebi: {sentence}")
     if bpy.app.background and jobs.is_nested(depsgraph.scene.original):
         _break_off()

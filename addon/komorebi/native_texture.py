@@ -21,8 +21,8 @@ def load(
     warn: Callable[[str], None],
     averaged: Container[bytes] = (),
 ) -> dict[bytes, Any]:
-    """The core.Texture of each image, by its key: those that the cache knows, or new ones. Those whose
-    keys are `averaged` have coarser levels.
+    """The core.Texture of each image, by its key: those that the cache knows, or new ones. Those
+    whose keys are `averaged` have coarser levels.
 
     Pictures of which all levels together take more than `limit` bytes lose their finest levels,
     the largest first, and `warn` is told so. A broken file is magenta, and told as well.

@@ -212,7 +212,7 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         "light with them; 0 is no limit",
         default=10.0, min=0.0, max=1e8,
     )  # fmt: skip
-    # Names, meaning and values of these three are those of Cycles; its factor and distance are the
+    # Names, meaning and values of these four are those of Cycles; its factor and distance are the
     # world's own.
     use_fast_gi: BoolProperty(
         name="Fast GI Approximation",
@@ -223,6 +223,11 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
     fast_gi_method: EnumProperty(
         name="Method", description="What ambient occlusion does to the light",
         items=FAST_GI_METHODS, default="REPLACE",
+    )  # fmt: skip
+    ao_bounces: IntProperty(
+        name="Viewport Bounces",
+        description="Likewise as Render Bounces, in the rendered viewport",
+        default=1, min=0, max=1024,
     )  # fmt: skip
     ao_bounces_render: IntProperty(
         name="Render Bounces",

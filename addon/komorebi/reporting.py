@@ -27,6 +27,8 @@ def warn(engine: Any, sentence: str) -> None:
     Farms look for the word "Error" in the log, so a warning never holds it, not even when a node
     or an object has it in its name.
     """
+    if engine.is_preview:  # of something that is still being made
+        return
     text = "Komorebi: " + re.sub("error", "err.", sentence, flags=re.IGNORECASE)
     known = text in _counts
     _counts[text] = _counts.get(text, 0) + 1

@@ -84,7 +84,7 @@ class Session {
   Settings settings_;
   FilterTable filter_;
   RenderContext context_;
-  CameraTables camera_tables_;  // of a camera that is not the scene's
+  CameraTables camera_tables_;                // of a camera that is not the scene's
   SkyGuide guide_;                            // what context_ draws light rays by
   std::atomic<std::uint32_t> light_samples_;  // context_'s, for those who ask
   bool prepared_ = false;                     // context_ is as the whole render takes it

@@ -42,11 +42,13 @@ struct QuickCurve {
     }
   }
   /// Of 0 to 1.
-  float decoded(float encoded) const {
-    return light[static_cast<std::int32_t>(encoded * kSteps + 0.5f)];
-  }
+  float decoded(float encoded) const { return light[nearest(encoded * kSteps)]; }
   std::uint8_t encoded(float linear) const {
-    return linear < 1.0f ? stored[static_cast<std::int32_t>(linear * kLightSteps + 0.5f)] : 255;
+    return linear < 1.0f ? stored[nearest(linear * kLightSteps)] : 255;
+  }
+  static std::int32_t nearest(float x) {
+    const float up = x + 0.5f;
+    return static_cast<std::int32_t>(up);
   }
 };
 

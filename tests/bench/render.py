@@ -62,16 +62,15 @@ def render(
     job = {
         "file": str(blend_file(scene)),
         "engine": engine,
-        "mode": scene.mode,
-        "world_image": str(meshes.shared_file(MAP))
-        if scene.mode == "world" and not scene.own_world
-        else None,
+        "mode": "ao" if scene.mode == "ao" else "world",
+        "world_image": str(meshes.shared_file(MAP)) if scene.has_map else None,
         "width": size[0],
         "height": size[1],
         "views": views,
         "bounces": scene.bounces,
         "lamps": False,
         "materials": scene.materials,
+        "fast_gi": None,
         "cycles": {},
         "komorebi": {},
         engine.lower(): settings or {},

@@ -12,7 +12,6 @@ GUIDING = "light rays are guided by what surfaces see of the sky, bounces by the
 OWN_DISTANCE = "all objects have the world's AO distance"
 VIEWPORT = "the rendered viewport has no such settings yet"
 BAKING = "there is no baking"
-PREVIEWS = "previews are not rendered"
 MATERIALS = "displacement is always relief, and surfaces that shine light nothing else yet"
 COPY = "a copy for the node editor of what the properties editor shows"
 DEBUG = "for developers of Cycles"
@@ -68,6 +67,8 @@ REPLACED = {
     "CYCLES_MATERIAL_PT_surface": "KOMOREBI_MATERIAL_PT_surface",
     "CYCLES_MATERIAL_PT_settings": "KOMOREBI_MATERIAL_PT_settings",
     "draw_device": "draw_method",
+    "CYCLES_MATERIAL_PT_preview": "KOMOREBI_MATERIAL_PT_preview",
+    "CYCLES_WORLD_PT_preview": "KOMOREBI_WORLD_PT_preview",
     "draw_pause": "draw_pause",
     "CYCLES_RENDER_PT_sampling_viewport": "KOMOREBI_RENDER_PT_sampling_viewport",
     "CYCLES_RENDER_PT_performance_viewport": "KOMOREBI_RENDER_PT_performance_viewport",
@@ -79,6 +80,7 @@ ADOPTED = {
     "CYCLES_PT_post_processing": "RENDER_PT_post_processing",
     "CYCLES_CAMERA_PT_dof": "DATA_PT_camera_dof",
     "CYCLES_CAMERA_PT_dof_aperture": "DATA_PT_camera_dof_aperture",
+    "CYCLES_LIGHT_PT_preview": "DATA_PT_preview",
     "CYCLES_PT_context_material": "EEVEE_MATERIAL_PT_context_material",
 }
 LEFT_OUT = {
@@ -109,14 +111,11 @@ LEFT_OUT = {
     "CYCLES_OBJECT_PT_shadow_linking": LINKING,
     "CYCLES_OBJECT_MT_light_linking_context_menu": LINKING,
     "CYCLES_OBJECT_MT_shadow_linking_context_menu": LINKING,
-    "CYCLES_LIGHT_PT_preview": PREVIEWS,
     "CYCLES_LIGHT_PT_nodes": LAMP_NODES,
     "CYCLES_LIGHT_PT_settings": LAMP_SETTINGS,
-    "CYCLES_WORLD_PT_preview": PREVIEWS,
     "CYCLES_WORLD_PT_volume": VOLUMES,
     "CYCLES_WORLD_PT_settings_volume": VOLUMES,
     "CYCLES_WORLD_PT_settings_light_group": LIGHT_GROUPS,
-    "CYCLES_MATERIAL_PT_preview": PREVIEWS,
     "CYCLES_MATERIAL_PT_volume": VOLUMES,
     "CYCLES_MATERIAL_PT_displacement": MATERIALS,
     "CYCLES_MATERIAL_PT_settings_surface": MATERIALS,

@@ -23,6 +23,8 @@ MOST = 1e-4  # mean of absolute differences, in parts of the range
 class Reports:
     """An engine that keeps what is reported."""
 
+    is_preview = False
+
     def __init__(self):
         self.sentences = []
 

@@ -51,7 +51,7 @@ class Layout:
             return types.SimpleNamespace(settings=Collection())
         if name in ("panel", "panel_prop"):
             return Layout(self.drawn), Layout(self.drawn)
-        if name in ("label", "menu", "popover", "template_node_view"):
+        if name in ("label", "menu", "popover", "template_node_view", "template_preview"):
             self.drawn.add((name, str(arguments[:1])))
         return Layout(self.drawn)
 

@@ -199,6 +199,8 @@ def test_objects_get_what_their_materials_ask_for():
     said = []
 
     class Engine:
+        is_preview = False
+
         def test_break(self):
             return False
 

@@ -12,6 +12,8 @@ import support
 class Engine:
     """Stands for the render engine; Blender wants to stop at the `breaks`th look."""
 
+    is_preview = False
+
     def __init__(self, breaks=None):
         self.looks, self.breaks = 0, breaks
 

@@ -197,6 +197,53 @@ def test_a_missing_picture_is_magenta_and_named(folder):
     assert any(str(path) in s and 'material "Look"' in s for s in sentences), sentences
 
 
+def test_pictures_are_averaged_for_bounces_alone():
+    from komorebi.export.surface import export_surface, look_of
+
+    scene = plate()
+    picture = bpy.data.images.new("Averaged", 8, 8)
+
+    def widths(bounces, interpolation="Linear", coordinate="UV", **links):
+        """Footprints by which camera rays look the picture up, and bounces if they differ."""
+
+        def textured(tree):
+            place = node(tree, "TexCoord").outputs[coordinate]
+            if "noise" in links:
+                place = node(tree, "TexNoise", Vector=place).outputs["Color"]
+            place = node(tree, "Mapping", Vector=place, Scale=(3.0, 2.0, 1.0)).outputs[0]
+            texture = node(tree, "TexImage", Vector=place)
+            texture.image, texture.interpolation = picture, interpolation
+            color = texture.outputs["Color"]
+            if "normal" in links:
+                bent = node(tree, "NormalMap", Color=color).outputs[0]
+                return node(tree, "BsdfDiffuse", Normal=bent).outputs[0]
+            if "alpha" in links:
+                shader = node(tree, "MixShader", Fac=texture.outputs["Alpha"])
+                tree.links.new(clear(tree), shader.inputs[1])
+                tree.links.new(node(tree, "BsdfDiffuse", Color=color).outputs[0], shader.inputs[2])
+                return shader.outputs[0]
+            return node(tree, "BsdfDiffuse", Color=color).outputs[0]
+
+        scene.komorebi.bounces = bounces
+        with reports() as sentences:
+            data = export_surface(None, material(textured), look_of(scene))
+        assert not sentences, sentences
+        looked_up = [
+            [op.operands[-1] for op in surface.program.ops if op.op == "image"]
+            for surface in (data.camera, data.bounce) if surface is not None
+        ]  # fmt: skip
+        assert set(looked_up[0]) == {0.0}  # camera rays
+        return looked_up[1] if len(looked_up) > 1 else None
+
+    for coordinate in ("UV", "Object", "Generated"):
+        assert isinstance(widths(2, coordinate=coordinate)[-1], tuple)
+    assert widths(0) is None
+    assert widths(2, interpolation="Closest") is None
+    assert widths(2, normal=True) is None
+    assert widths(2, alpha=True) is None
+    assert set(widths(2, noise=True) or {0.0}) == {0.0}
+
+
 def test_the_emission_pass(folder):
     scene = plate(mixed(0.5, diffuse((0.5, 0.5, 0.5, 1.0)), shine))
     scene.view_layers[0].use_pass_emit = True

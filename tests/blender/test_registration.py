@@ -12,7 +12,7 @@ DEFAULTS = {
     "environment_sampling": "PRODUCT", "pixel_filter": "BLACKMAN_HARRIS", "filter_width": 1.5,
     "use_progressive": True, "bounces": 2, "ao_indirect_bounces": 0, "sample_clamp_direct": 0.0,
     "sample_clamp_indirect": 10.0, "use_fast_gi": False, "fast_gi_method": "REPLACE",
-    "ao_bounces_render": 1,
+    "ao_bounces": 1, "ao_bounces_render": 1,
 }  # fmt: skip
 ITEMS = {
     "method": ["AMBIENT_OCCLUSION", "WORLD_LIGHT"],
@@ -66,7 +66,7 @@ def test_blenders_panels_are_inherited():
     ours = {p.__name__ for p in panels() if "KOMOREBI" in getattr(p, "COMPAT_ENGINES", ())}
     for name in INHERITED:
         assert name in ours, name
-    for name in ("OBJECT_PT_visibility", "VIEWLAYER_PT_layer_passes", "DATA_PT_preview"):
+    for name in ("OBJECT_PT_visibility", "VIEWLAYER_PT_layer_passes", "DATA_PT_light"):
         assert name not in ours, name
 
 

@@ -1,6 +1,7 @@
 """Pictures of Image Texture nodes beside Cycles, pixel by pixel, and what becomes of bad ones."""
 
 import struct
+from pathlib import Path
 
 import bpy
 import komorebi_core as core
@@ -273,6 +274,27 @@ def test_missing_and_broken():
         warnings.clear()
         export_texture(node.image, node.image_user, 1, warnings.append)
         assert odd in warnings[0], warnings
+
+
+def test_files_cut_short():
+    with support.folder() as folder:
+        _, node = textures.plate()
+        for name, *kind in (("a", "PNG", "8"), ("b", "OPEN_EXR", "16"), ("c", "HDR", "32")):
+            mode = "RGB" if name == "c" else "RGBA"
+            node.image = saved(folder, name, *kind, width=70, height=50, mode=mode)
+            path = Path(node.image.filepath)
+            whole = path.read_bytes()
+            for size in (0, 3, 60, 400, len(whole) // 2):
+                path.write_bytes(whole[:size])
+                warnings = []
+                assert np.allclose(textures.ours(node, "COLOR", warnings), (1, 0, 1)), (name, size)
+                assert path.name in warnings[0] and "magenta" in warnings[0], warnings
+                try:
+                    core.Environment.from_file(str(path))
+                except RuntimeError as error:
+                    assert path.name in str(error)
+                else:
+                    raise AssertionError(f"{path.name} of {size} bytes must not pass")
 
 
 def test_limit_and_cache():

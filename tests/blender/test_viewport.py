@@ -104,6 +104,21 @@ def test_a_viewport_shows_the_final_picture(folder):
     scene.update_tag()
     yield 0.1
     yield from expect_final(orthographic=True)
+    scene.world.light_settings.ao_factor = 0.3
+    scene.komorebi.use_fast_gi = True
+    scene.komorebi.ao_bounces, scene.komorebi.ao_bounces_render = 1, 0  # bounces of its own
+    scene.update_tag()
+    yield 0.1
+    yield from w.finished()
+    approximated = the_viewport().picture.pixels.copy()
+    scene.komorebi.ao_bounces_render = 1
+    off = np.abs(approximated - final(orthographic=True)).mean()
+    scene.komorebi.ao_bounces = 0
+    scene.update_tag()
+    yield 0.1
+    yield from w.finished()
+    change = np.abs(the_viewport().picture.pixels - approximated).mean()
+    assert change > 1e-3 and off < 0.05 * change, (off, change)
 """)  # fmt: skip
 
 

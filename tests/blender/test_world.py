@@ -15,6 +15,8 @@ from komorebi.export.world import export_world
 class Reports:
     """An engine that keeps what is reported."""
 
+    is_preview = False
+
     def __init__(self):
         self.sentences = []
 

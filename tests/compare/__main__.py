@@ -32,6 +32,8 @@ def compare(chosen: argparse.Namespace, scene: Path, mode: str) -> dict[str, Any
     return {
         "scene": str(scene),
         "mode": mode,
+        "materials": chosen.materials,
+        "bounces": chosen.bounces,
         "passed": verdict.passed,
         "engines": [first.engine, second.engine],
         "blender": a.blender,

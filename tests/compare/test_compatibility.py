@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from compare import compatibility, launch
+from compare import colours, compatibility, launch
 
 
 def result(name: str, mode: str, passed: bool, blender: str = "3.4.1") -> dict[str, Any]:
@@ -40,3 +40,15 @@ def test_a_row_a_scene_and_a_column_a_release() -> None:
 def test_a_scene_without_a_word_is_refused() -> None:
     with pytest.raises(ValueError, match="does not say what nowhere proves"):
         compatibility.table([[result("nowhere", "ao", True)]])
+
+
+def test_scenes_of_colours_have_a_row_a_number_of_bounces() -> None:
+    old, new = (
+        result("colors", "world", p, r)["figures"] for p, r in ((True, "3.4"), (False, "4.5"))
+    )
+    common = {"scene": "blend_scenes/colors.blend", "size": [160, 90]}
+    text = colours.table([{**old, **common, "bounces": 0}, {**new, **common, "bounces": 2}])
+    assert "Blender 3.4 | Blender 4.5" in text
+    first, second = (line for line in text.splitlines() if "`colors`" in line)
+    assert first.endswith("| 0 | 0.25 %, 1.2 (16 samples, 160 px) | not run |")
+    assert second.endswith("| 2 | not run | **differs**: 0.25 %, 1.2 (16 samples, 160 px) |")

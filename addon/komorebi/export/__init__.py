@@ -9,6 +9,7 @@ from typing import Any
 from ..errors import RenderCancelled
 from ..passes import value_columns
 from ..scene_data import SceneData, WorldData
+from ..scene_settings import settings_of
 from ..unchanged import Unchanged
 from .aovs import AovReader
 from .camera_motion import CameraMotion
@@ -43,11 +44,11 @@ def export_scene(
         data = SceneData(
             cameras={view: camera.data for view, camera in zip(views, cameras, strict=True)},
             world=exported_world,
-            texture_limit=depsgraph.scene.komorebi.texture_limit << 20,
+            texture_limit=settings_of(depsgraph.scene).texture_limit << 20,
         )
         deforming = DeformingShapes(engine, depsgraph, shutter)
         motion = None if shutter is None else InstanceMotion(shutter, deforming)
-        if depsgraph.view_layer.use_sky and depsgraph.scene.komorebi.sky == "SCENE":
+        if depsgraph.view_layer.use_sky and settings_of(depsgraph.scene).sky == "SCENE":
             columns = value_columns(depsgraph.view_layer)
             aovs = AovReader(engine, columns, surroundings_of(depsgraph.scene))
             data.world_values = aovs.of_world(depsgraph.scene.world)
@@ -72,7 +73,7 @@ def export_view(
     data = SceneData(
         cameras={},
         world=world or export_sky(engine, depsgraph.scene, depsgraph.view_layer),
-        texture_limit=depsgraph.scene.komorebi.texture_limit << 20,
+        texture_limit=settings_of(depsgraph.scene).texture_limit << 20,
     )
     export_instances(engine, depsgraph, data, Wanted.by(sources), unchanged, shown=shown)
     return data

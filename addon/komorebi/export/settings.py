@@ -7,6 +7,7 @@ from typing import Any
 from .. import compat
 from ..denoise.run import GUIDES
 from ..passes import Pass, sources
+from ..scene_settings import settings_of
 
 # An odd multiplier far from any pattern (2³² / golden ratio): neighbouring frames get seeds that
 # have nothing in common.
@@ -17,7 +18,7 @@ _SEED_MASK = 0x7FFFFFFF
 def layer_samples(scene: Any, view_layer: Any) -> int:
     """The samples of a view layer: its own if it has any, unless Cycles' setting says otherwise."""
     own: int = view_layer.samples
-    of_scene: int = scene.komorebi.samples
+    of_scene: int = settings_of(scene).samples
     rule = getattr(compat.cycles_or(scene, None), "use_layer_samples", "USE")
     if own == 0 or rule == "IGNORE":
         return of_scene
@@ -33,7 +34,7 @@ def bounces(settings: Any) -> int:
 
 def fast_gi(scene: Any) -> dict[str, Any]:
     """As in Cycles the world has factor and distance, and without one there is none of it."""
-    settings = scene.komorebi
+    settings = settings_of(scene)
     if scene.world is None:
         return {"use_fast_gi": False}
     ambient = scene.world.light_settings
@@ -51,7 +52,7 @@ def export_settings(
 ) -> dict[str, Any]:
     """`region` is (x_min, y_min, x_max, y_max) in pixels of the full frame."""
     samples = layer_samples(scene, view_layer)
-    settings, render = scene.komorebi, scene.render
+    settings, render = settings_of(scene), scene.render
     mist = scene.world.mist_settings if scene.world is not None else None
     seed = settings.seed
     if settings.use_animated_seed:

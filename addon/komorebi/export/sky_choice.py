@@ -9,6 +9,7 @@ import bpy
 
 from ..errors import RenderError
 from ..scene_data import EnvironmentImage, WorldData
+from ..scene_settings import settings_of
 from .mapping import euler_matrix
 from .surroundings import surroundings_of
 from .world import export_world
@@ -16,7 +17,7 @@ from .world import export_world
 
 def export_sky(engine: Any, scene: Any, view_layer: Any) -> WorldData:
     """RenderError when a studio light or the world's picture is not there."""
-    settings = scene.komorebi
+    settings = settings_of(scene)
     if not view_layer.use_sky:  # no sky at all, neither seen nor as a light
         return WorldData()
     if settings.sky == "WHITE":

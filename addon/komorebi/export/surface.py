@@ -7,6 +7,7 @@ from typing import Any
 
 from .. import compat, reporting
 from ..scene_data import Lobe, ProgramData, SurfaceData, SurfacePrograms, Value
+from ..scene_settings import settings_of
 from . import nodes
 from .names import name_of
 from .shader import Compiler, Ray
@@ -35,7 +36,7 @@ class Look:
 
 def look_of(scene: Any) -> Look:
     """What the settings of a scene say."""
-    settings = scene.komorebi
+    settings = settings_of(scene)
     look = Look(None)
     if settings.surface == "CLAY":
         look = Look(tuple(settings.clay_color), settings.clay_bump, settings.clay_glass == "SKIP")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from .. import compat, reporting
+from ..scene_settings import settings_of
 from .names import name_of
 
 
@@ -16,7 +17,7 @@ def warn_scene(engine: Any, scene: Any) -> None:
 
 def warn_object(engine: Any, scene: Any, original: Any) -> None:
     """Warnings for an object that renders."""
-    settings = scene.komorebi
+    settings = settings_of(scene)
     replaces = settings.use_fast_gi and settings.fast_gi_method == "REPLACE"
     if replaces and settings.method == "WORLD_LIGHT" and compat.has_own_ao_distance(original):
         reporting.warn(

@@ -12,7 +12,6 @@ EXCLUDED = {
     "DATA_PT_area": "lamps have a panel of ours",
     "DATA_PT_falloff_curve": "lamps have a panel of ours",
     "DATA_PT_light": "lamps have a panel of ours",
-    "DATA_PT_preview": "previews are not rendered",
     "DATA_PT_spot": "lamps have a panel of ours",
     "DATA_PT_volume_render": "volumes are not rendered",
     "NODE_DATA_PT_light": "lamps have a panel of ours",

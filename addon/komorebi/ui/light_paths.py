@@ -59,7 +59,9 @@ class KOMOREBI_RENDER_PT_light_paths_fast_gi(KomorebiPanel, bpy.types.Panel):
             column.prop(world.light_settings, "ao_factor", text="AO Factor")
             column.prop(world.light_settings, "distance", text="AO Distance")
         if settings.fast_gi_method == "REPLACE":
-            self.column().prop(settings, "ao_bounces_render")
+            column = self.column(align=True)
+            column.prop(settings, "ao_bounces")
+            column.prop(settings, "ao_bounces_render")
 
 
 CLASSES = (

@@ -19,6 +19,14 @@ class MaterialPanel(KomorebiPanel):
         return super().poll(context) and material is not None and not material.grease_pencil
 
 
+class KOMOREBI_MATERIAL_PT_preview(MaterialPanel, bpy.types.Panel):
+    bl_label = "Preview"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        self.layout.template_preview(context.material)
+
+
 class KOMOREBI_MATERIAL_PT_surface(MaterialPanel, bpy.types.Panel):
     bl_label = "Surface"
 
@@ -36,4 +44,8 @@ class KOMOREBI_MATERIAL_PT_settings(MaterialPanel, bpy.types.Panel):
         column.prop(context.material.komorebi, "exclude_from_clay")
 
 
-CLASSES = (KOMOREBI_MATERIAL_PT_surface, KOMOREBI_MATERIAL_PT_settings)
+CLASSES = (
+    KOMOREBI_MATERIAL_PT_preview,
+    KOMOREBI_MATERIAL_PT_surface,
+    KOMOREBI_MATERIAL_PT_settings,
+)

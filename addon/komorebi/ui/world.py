@@ -18,6 +18,14 @@ class WorldPanel(KomorebiPanel):
         return super().poll(context) and context.world is not None
 
 
+class KOMOREBI_WORLD_PT_preview(WorldPanel, bpy.types.Panel):
+    bl_label = "Preview"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        self.layout.template_preview(context.world)
+
+
 class KOMOREBI_WORLD_PT_surface(WorldPanel, bpy.types.Panel):
     bl_label = "Surface"
 
@@ -82,6 +90,7 @@ class KOMOREBI_WORLD_PT_ray_visibility(WorldPanel, bpy.types.Panel):
 
 
 CLASSES = (
+    KOMOREBI_WORLD_PT_preview,
     KOMOREBI_WORLD_PT_surface,
     KOMOREBI_WORLD_PT_ambient_occlusion,
     KOMOREBI_WORLD_PT_mist,

@@ -83,6 +83,7 @@ class Viewport:
             "sample_offset": 0,
             "time_limit": 0.0,
             "use_progressive": True,
+            "fast_gi_bounces": preview.ao_bounces,
             "passes": [source],
             "pixel_size": _pixel_size(scene),
         }  # fmt: skip

@@ -3,9 +3,9 @@
     PYTHON_WITH_BPY tests/bench/inside/make_scene.py -- KIND MESH.npz OUT.blend
 
 KIND is dragon (on a ground), interior (a hall seen from within), instances (10,000 dragons, made
-by Blender's instancing on faces), sky (the dragon on tiles under a Sky Texture) or leaves (trees of
-cards that a picture cuts leaves out of, on tiles). MESH.npz holds positions float32 [V, 3], y up,
-and corners int32 [T, 3]; nothing for leaves.
+by Blender's instancing on faces), leaves (the dragon in a grove of cards with pictures of leaves) or
+sky (the dragon on tiles under a Sky Texture). MESH.npz holds positions float32 [V, 3], y up, and corners int32
+[T, 3].
 """
 
 from __future__ import annotations
@@ -19,13 +19,12 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "blend_scenes"))
 
-from common import add_box, add_camera, add_rectangle, empty_scene, link, set_world
+from common import add_camera, add_rectangle, empty_scene, link, set_world
+from materials import leaf_color, tile_color
 from nodes import add, diffuse, material, mix, picture
 
 SIDE = 100  # instances along each side of the field
 SPACING = 2.6  # metres from one to the next
-TREES, LEAVES = 40, 200  # leaves a tree
-SQUARE = ((0, 0), (1, 0), (1, 1), (0, 1))
 
 
 def mesh_object(name: str, positions: np.ndarray, corners: np.ndarray) -> Any:
@@ -87,56 +86,24 @@ def instances(positions: np.ndarray, corners: np.ndarray) -> None:
     add_camera((0.0, -SIDE * SPACING / 2 - 4.0, 9.0), (0.0, -SIDE * SPACING / 2 + 14.0, 0.0))
 
 
-def lay_out(thing: Any, corners: Any) -> None:
-    """A UV map for an object of one quad."""
-    layer = thing.data.uv_layers.new(name="UVMap")
-    for loop, uv in zip(layer.data, corners, strict=True):
-        loop.uv = uv
+def with_picture(obj: Any, look: Any, repeat: float = 1.0) -> None:
+    """Each four-sided face shows the whole picture, `repeat` times."""
+    obj.data.materials.append(look)
+    corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32) * np.float32(repeat)
+    layer = obj.data.uv_layers.new(name="UVMap")
+    layer.data.foreach_set("uv", np.tile(corners, (len(obj.data.polygons), 1)).ravel())
 
 
-def tiled_ground(size: float) -> None:
-    """A ground of tiles, of a picture that is repeated every metre."""
-    grain = np.random.default_rng(2).uniform(0.7, 1.0, (256, 256))
-
-    def tile(u: float, v: float) -> tuple[float, ...]:
-        dark = (int(u * 4) + int(v * 4)) % 2
-        light = float(grain[int(v * 256), int(u * 256)]) * (0.35 if dark else 0.8)
-        return (light, 0.9 * light, 0.75 * light, 1.0)
-
-    image = picture("Tiles", 256, tile)
-    ground = add_rectangle(
-        "Ground", (-size / 2, -size / 2, 0.0), (size, 0.0, 0.0), (0.0, size, 0.0)
-    )
-    lay_out(ground, [(size * u, size * v) for u, v in SQUARE])
-    ground.data.materials.append(
-        material("Tiles", lambda t: diffuse(t, add(t, "TexImage", image=image).outputs["Color"]))
-    )
+def tiles() -> Any:
+    image = picture("Tiles", 1024, tile_color)
+    return material("Tiled", lambda t: diffuse(t, add(t, "TexImage", image=image).outputs["Color"]))
 
 
-def sky(positions: np.ndarray, corners: np.ndarray) -> None:
-    """A coloured dragon on tiles, in the sun of Cycles' best sky with its disc."""
-    mesh = mesh_object("Dragon", standing(positions, 1.44), corners)
-    mesh.data.materials.append(material("Jade", lambda t: diffuse(t, (0.25, 0.5, 0.3))))
-    tiled_ground(120.0)
-    add_camera((1.0, -4.0, 1.75), (0.0, 0.0, 0.68), lens=50.0)
-    tree = set_world(strength=0.1).node_tree
-    above = add(tree, "TexSky", sky_type="NISHITA", sun_disc=True, sun_elevation=0.6)
-    tree.links.new(above.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+def leaf() -> Any:
+    """A leaf on a card, of which a part of the light comes through."""
+    cut = picture("Leaf", 512, leaf_color)
 
-
-def leaf(u: float, v: float) -> tuple[float, ...]:
-    """A pointed leaf with a rib and veins, on nothing."""
-    across = abs(u - 0.5)
-    inside = across < 0.4 * np.sin(np.pi * v) ** 0.8
-    vein = across < 0.02 or (v * 9 + across * 6) % 1.0 < 0.1
-    return (*((0.4, 0.5, 0.15) if vein else (0.15, 0.4, 0.08)), 1.0 if inside else 0.0)
-
-
-def leaves() -> None:
-    """Trees of leaves that are cut out of cards and let light through, each card an object."""
-    cut = picture("Leaf", 256, leaf)
-
-    def look(tree: Any) -> Any:
+    def build(tree: Any) -> Any:
         texture = add(tree, "TexImage", image=cut)
         color = texture.outputs["Color"]
         through = add(tree, "BsdfTranslucent", {"Color": color}).outputs[0]
@@ -144,24 +111,50 @@ def leaves() -> None:
         nothing = add(tree, "BsdfTransparent").outputs[0]
         return mix(tree, texture.outputs["Alpha"], nothing, green)
 
-    card = add_rectangle("Leaf", (-0.2, 0.0, 0.0), (0.4, 0.0, 0.0), (0.0, 0.6, 0.12))
-    lay_out(card, SQUARE)
-    card.data.materials.append(material("Leaf", look))
-    bark = material("Bark", lambda t: diffuse(t, (0.25, 0.15, 0.08)))
-    random = np.random.default_rng(3)
-    for number in range(TREES):
-        x = 3.0 * (number % 8) - 10.5 + random.uniform(-0.8, 0.8)
-        y = 3.5 * (number // 8) + random.uniform(-0.8, 0.8)
-        add_box("Trunk", (0.16, 0.16, 2.4), (x, y, 1.2)).data.materials.append(bark)
-        for _ in range(LEAVES):
-            copy = link(bpy.data.objects.new("Leaf", card.data))
-            height, turn = random.uniform(0.8, 3.4), random.uniform(0.0, 2.0 * np.pi)
-            reach = 1.5 * np.sqrt(random.uniform()) * (1.25 - height / 4.0)
-            copy.location = (x + reach * np.cos(turn), y + reach * np.sin(turn), height)
-            copy.rotation_euler = (random.uniform(-0.6, 0.9), random.uniform(-0.5, 0.5), turn)
-    bpy.data.objects.remove(card)
-    tiled_ground(200.0)
-    add_camera((0.0, -9.0, 3.2), (0.0, 0.0, 1.5), lens=32.0)
+    return material("Leaf", build)
+
+
+def leaves(positions: np.ndarray, corners: np.ndarray) -> None:
+    """The dragon on tiles among 64 trees of 2,000 leaves."""
+    stone = mesh_object("Dragon", standing(positions, 1.44), corners)
+    stone.data.materials.append(material("Stone", lambda t: diffuse(t, (0.5, 0.45, 0.4))))
+    random = np.random.default_rng(2)
+    count = 2000
+    direction = random.normal(size=(count, 3))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    middle = direction * random.uniform(0.3, 1.0, (count, 1)) ** (1 / 3) * (1.3, 1.3, 1.1)
+    side = np.cross(direction, random.normal(size=(count, 3)))
+    side /= np.linalg.norm(side, axis=1, keepdims=True)
+    up = np.cross(side, direction) + 0.4 * direction
+    quad = np.stack([-side, side, side + 2 * up, -side + 2 * up], axis=1) * 0.09
+    points = (middle + np.array([0.0, 0.0, 2.6]))[:, None] + quad
+    tree = mesh_object("Tree", points.reshape(-1, 3), np.arange(4 * count).reshape(-1, 4))
+    with_picture(tree, leaf())
+    places = random.uniform(-9.0, 9.0, (200, 2))
+    places = [p for p in places if np.hypot(*p) > 1.8 and not (abs(p[0]) < 1.2 and p[1] < 0)][:64]
+    for number, place in enumerate(places):
+        copy = tree if number == 0 else link(bpy.data.objects.new("Tree", tree.data))
+        copy.location = (*place, random.uniform(-0.8, 0.2))
+        copy.rotation_euler = (0.0, 0.0, random.uniform(0.0, 6.28))
+    ground = add_rectangle("Ground", (-40.0, -40.0, 0.0), (80.0, 0.0, 0.0), (0.0, 80.0, 0.0))
+    with_picture(ground, tiles(), 20.0)
+    add_camera((1.0, -6.5, 2.2), (0.0, 0.0, 1.4), lens=35.0)
+
+
+def sky(positions: np.ndarray, corners: np.ndarray) -> None:
+    """The dragon on tiles in the evening, its world a Sky Texture with its sun."""
+    dragon(positions, corners)
+    with_picture(bpy.data.objects["Ground"], tiles(), 30.0)
+    bronze = material("Bronze", lambda t: diffuse(t, (0.45, 0.3, 0.2)))
+    bpy.data.objects["Dragon"].data.materials.append(bronze)
+
+
+def set_sky() -> None:
+    tree = set_world().node_tree
+    texture = tree.nodes.new("ShaderNodeTexSky")
+    texture.sky_type, texture.sun_elevation, texture.sun_rotation = "NISHITA", 0.5, 2.4
+    tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+    tree.nodes["Background"].inputs["Strength"].default_value = 0.1
 
 
 def main() -> None:
@@ -169,12 +162,13 @@ def main() -> None:
     kind, source, target = sys.argv[sys.argv.index("--") + 1 :]
     data = np.load(source)
     empty_scene(1280, 720)
-    makers = {"dragon": dragon, "interior": interior, "instances": instances, "sky": sky}
-    if kind == "leaves":
-        leaves()
+    kinds = {
+        "dragon": dragon, "interior": interior, "instances": instances, "leaves": leaves, "sky": sky,
+    }  # fmt: skip
+    kinds[kind](data["positions"], data["corners"])
+    if kind == "sky":
+        set_sky()
     else:
-        makers[kind](data["positions"], data["corners"])
-    if kind != "sky":
         set_world()
     bpy.context.preferences.filepaths.save_version = 0
     bpy.ops.wm.save_as_mainfile(filepath=str(Path(target).resolve()), compress=False)

@@ -114,7 +114,6 @@ def main() -> None:
         "stereo": None,
         "view_layer": None,
         "flat": False,
-        "fast_gi": None,
         "samples": 1,
         "longest": longest,
     }

@@ -9,6 +9,7 @@
 #include "core/surface_point.h"
 #include "render/batch.h"
 #include "render/one_ray.h"
+#include "support/busy_scenes.h"
 #include "support/cavity.h"
 
 namespace komorebi::testing {
@@ -189,6 +190,32 @@ TEST(Bounces, ShareTheSkyWithLightRaysWithoutBias) {
       EXPECT_LT(shared.error, 1.1 * apart.error);  // which is itself known to 4 %
       EXPECT_LT(apart.error, 0.02 * apart.mean);
     }
+  }
+}
+
+/// Of the scene with catchers, terminators, cut-outs and lobes, in which some objects are hidden
+/// from some rays, so that a render would not do it there.
+TEST(Bounces, ShareTheSkyInBatchesAsOneRayDoesAfterAnother) {
+  const Lottery lottery(0.6);
+  const auto scene = telling_scene(&lottery, many_lobes());
+  Settings settings = small_settings(Method::kWorldLight);
+  settings.bounces = 4;
+  const FilterTable filter(settings.pixel_filter, settings.filter_width);
+  RenderContext context = make_context(*scene, settings, filter.view());
+  ASSERT_FALSE(context.shares_light);
+  context.passes = {};
+  std::vector<PixelPlace> pixels;
+  for (std::uint32_t i = 0; i < 60; ++i) pixels.push_back({5 + 7 * (i % 20), 10 + 25 * (i / 20)});
+  constexpr std::uint32_t kCount = 8;
+  std::vector<Vec3> found(kCount * pixels.size()), apart(found.size());
+  ASSERT_TRUE(BatchIntegrator(context).sample(pixels, kCount, apart.data(), Cancel()));
+  context.shares_light = true;
+  ASSERT_TRUE(BatchIntegrator(context).sample(pixels, kCount, found.data(), Cancel()));
+  EXPECT_NE(found, apart);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const PixelPlace at = pixels[i / kCount];
+    const auto sample = static_cast<std::uint32_t>(i % kCount);
+    EXPECT_EQ(found[i], render_sample(context, at.x, at.y, sample, nullptr).radiance) << i;
   }
 }
 

@@ -165,7 +165,7 @@ TEST(LampLight, EndsAfterItsBounces) {
     lamp.max_bounces = most;
     return render(lit(std::vector<LampInput>(lamps, lamp), {{wall}, {screen}}), settings);
   };
-  for (const std::size_t lamps : {1, 20}) {  // 20 in a tree
+  for (const std::size_t lamps : {1u, 20u}) {  // 20 in a tree
     const auto once = seen(1, 1024.0, lamps), twice = seen(2, 1024.0, lamps);
     EXPECT_EQ(estimate(seen(2, 0.0, lamps)).mean, 0.0);
     EXPECT_GT(estimate(once).mean, 0.0);

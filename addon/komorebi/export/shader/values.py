@@ -63,6 +63,8 @@ class Builder:
         for x, y in ((a, b), (b, a)):
             if all(c == 1.0 for c in x) and len(x) <= len(y):
                 return y
+            if all(c == 0.0 for c in x):  # as the core: whatever the other is
+                return (0.0,) * max(len(x), len(y))
         return self.each("multiply", a, b)
 
     def add(self, a: Value, b: Value) -> Value:

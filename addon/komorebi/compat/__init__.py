@@ -10,26 +10,52 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from .scene_data import BoolArray, FloatArray, IntArray
+from ..scene_data import BoolArray, FloatArray, IntArray
+from .lights import (
+    casts_shadow,
+    is_soft,
+    light_factor,
+    light_links,
+    light_tint,
+    max_bounces,
+    normalizes,
+)
+from .releases import (
+    CORNER_NORMALS,
+    FLAT_NORMAL_MAPS,
+    FLAT_RECTS,
+    GENERIC_ATTRIBUTES,
+    LONG_PASS_NAMES,
+    NOISE_REPEATS,
+    NORMALS_AS_DIRECTIONS,
+    OLD_LAMPS,
+    UNLIMITED_BOUNCES,
+    VERSION,
+    VORONOI_PCG,
+    cycles_or,
+)
 
-VERSION: tuple[int, int, int] = bpy.app.version
-
-FLAT_RECTS = VERSION >= (4, 1, 0)  # rect.foreach_set wants one dimension instead of two
-GENERIC_ATTRIBUTES = VERSION >= (3, 6, 0)  # position, .corner_vert, sharp_face are attributes
-LONG_PASS_NAMES = VERSION >= (5, 0, 0)  # "Material Index", not "IndexMA"
-FLAT_NORMAL_MAPS = VERSION < (4, 0, 0)  # strength leans the mapped normal, not the map's colour
-NORMALS_AS_DIRECTIONS = VERSION < (4, 0, 0)  # so the node Vector Transform turned them
-CORNER_NORMALS = VERSION >= (4, 1, 0)  # mesh.corner_normals, no auto smooth
-NOISE_REPEATS = VERSION >= (4, 1, 0)  # every 100,000 cells, where floats lose places in a cell
-VORONOI_PCG = VERSION >= (5, 0, 0)  # hashes cells of two dimensions and more
-UNLIMITED_BOUNCES = 1024  # the most that a lamp's or world's setting can be
-OLD_LAMPS = VERSION < (4, 0, 0)  # disks for balls, areas of a quarter of their power
-
-
-def cycles_or(block: Any, otherwise: Any) -> Any:
-    """Cycles' settings of a data-block, which artists have made; without Cycles, `otherwise`."""
-    settings = getattr(block, "cycles", None)
-    return otherwise if settings is None else settings
+__all__ = [
+    "CORNER_NORMALS",
+    "FLAT_NORMAL_MAPS",
+    "FLAT_RECTS",
+    "GENERIC_ATTRIBUTES",
+    "LONG_PASS_NAMES",
+    "NOISE_REPEATS",
+    "NORMALS_AS_DIRECTIONS",
+    "OLD_LAMPS",
+    "UNLIMITED_BOUNCES",
+    "VERSION",
+    "VORONOI_PCG",
+    "casts_shadow",
+    "cycles_or",
+    "is_soft",
+    "light_factor",
+    "light_links",
+    "light_tint",
+    "max_bounces",
+    "normalizes",
+]  # besides what is here
 
 
 def world_visibility(world: Any) -> tuple[bool, bool]:
@@ -363,46 +389,3 @@ def rolling_shutter(scene: Any) -> float | None:
     if settings is None or settings.rolling_shutter_type != "TOP":
         return None
     return float(settings.rolling_shutter_duration)
-
-
-def casts_shadow(light: Any) -> bool:
-    """Whether what is in a light's way matters: Cycles' own setting up to 4.2."""
-    settings = cycles_or(light, None)
-    if settings is not None and hasattr(settings, "cast_shadow"):
-        return bool(settings.cast_shadow)
-    return bool(light.use_shadow)
-
-
-def max_bounces(owner: Any) -> int:
-    """How often light of a lamp or world may bounce: Cycles' setting, no limit without Cycles."""
-    return int(getattr(cycles_or(owner, None), "max_bounces", UNLIMITED_BOUNCES))
-
-
-def is_soft(light: Any) -> bool:
-    """Whether a point or spot with a radius is a disk turned to what it lights, not a ball."""
-    return OLD_LAMPS or bool(light.use_soft_falloff)
-
-
-def normalizes(light: Any) -> bool:
-    """Whether a light's power is spread over its size (a choice since 4.5)."""
-    return bool(getattr(light, "normalize", True))
-
-
-def light_factor(light: Any) -> float:
-    """What multiplies a light's power: its exposure (4.5)."""
-    return float(2.0 ** getattr(light, "exposure", 0.0))
-
-
-def light_tint(light: Any) -> tuple[float, float, float]:
-    """What multiplies a light's colour: its temperature (4.5)."""
-    if not getattr(light, "use_temperature", False):
-        return (1.0, 1.0, 1.0)
-    red, green, blue = light.temperature_color
-    return (float(red), float(green), float(blue))
-
-
-def light_links(obj: Any) -> list[str]:
-    """What of light linking (4.0) an object uses."""
-    links = getattr(obj, "light_linking", None)
-    found = (("receiver_collection", "light linking"), ("blocker_collection", "shadow linking"))
-    return [what for name, what in found if getattr(links, name, None) is not None]

@@ -1,0 +1,93 @@
+"""Previews of materials, worlds and objects in a window (under Xvfb), beside Cycles' own."""
+
+import test_window
+
+PREVIEWS = """
+import time
+import bpy, numpy as np
+import window_steps as w
+bpy.context.preferences.view.show_splash = False
+scene = bpy.context.scene
+
+def previewed(thing, engine):
+    "The icon that `engine` makes of something, [height, width, 4] from 0 to 1."
+    scene.render.engine = engine
+    thing.asset_generate_preview()
+    yield 0.1
+    end = time.monotonic() + 60
+    while bpy.app.is_job_running("RENDER_PREVIEW") if has_job else time.monotonic() < end - 56:
+        assert time.monotonic() < end
+        yield 0.05
+    yield 0.3
+    preview = thing.preview
+    shown[engine] = np.array(preview.image_pixels_float[:], np.float32).reshape(
+        preview.image_size[1], preview.image_size[0], 4)
+
+shown = {}
+try:
+    has_job = bpy.app.is_job_running("RENDER_PREVIEW") in (False, True)
+except (ValueError, TypeError):  # in old releases one cannot ask
+    has_job = False
+
+def colored(name, color):
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    nodes = material.node_tree.nodes
+    nodes.clear()
+    output = nodes.new("ShaderNodeOutputMaterial")
+    diffuse = nodes.new("ShaderNodeBsdfDiffuse")
+    diffuse.inputs["Color"].default_value = (*color, 1.0)
+    material.node_tree.links.new(diffuse.outputs[0], output.inputs["Surface"])
+    material.use_fake_user = True
+    return material
+
+def expect_alike(within):
+    ours, theirs = shown["KOMOREBI"], shown["CYCLES"]
+    assert ours.shape == theirs.shape and ours.shape[0] >= 128, (ours.shape, theirs.shape)
+    assert np.ptp(ours[..., :3]) > 0.2, "an even picture"
+    blocks = [p[:128, :128].reshape(8, 16, 8, 16, 4).mean(axis=(1, 3)) for p in (ours, theirs)]
+    off = np.abs(blocks[0] - blocks[1])
+    assert np.median(off) < within and off.mean() < 2 * within, (np.median(off), off.mean())
+"""
+
+
+def run(folder, steps):
+    text = PREVIEWS + "\ndef steps():\n" + steps + "\nw.start(steps())\n"
+    return test_window.run(text, folder)
+
+
+def test_materials_have_previews(folder):
+    done = run(folder, """
+    yield 0.5
+    material, other = colored("Red", (0.8, 0.1, 0.05)), colored("Broken", (0.0, 0.0, 0.0))
+    broken = bpy.data.images.new("Nowhere", 4, 4)
+    broken.source, broken.filepath = "FILE", "//nowhere.png"
+    texture = other.node_tree.nodes.new("ShaderNodeTexImage")
+    texture.image = broken
+    diffuse = next(n for n in other.node_tree.nodes if n.type == "BSDF_DIFFUSE")
+    other.node_tree.links.new(texture.outputs[0], diffuse.inputs["Color"])
+    for engine in ("CYCLES", "KOMOREBI"):
+        yield from previewed(material, engine)
+    expect_alike(0.02)
+    middle = shown["KOMOREBI"][48:80, 48:80, :3].mean(axis=(0, 1))
+    assert middle[0] > 1.5 * middle[1], middle
+    yield from previewed(other, "KOMOREBI")
+    assert np.ptp(shown["KOMOREBI"][..., :3]) > 0.2
+""")  # fmt: skip
+    assert "Komorebi:" not in done.output, done  # previews warn of nothing
+
+
+def test_worlds_have_previews(folder):
+    run(folder, """
+    yield 0.5
+    world = scene.world
+    world.use_nodes = True
+    tree = world.node_tree
+    coordinates = tree.nodes.new("ShaderNodeTexCoord")
+    tree.links.new(
+        coordinates.outputs["Generated"], tree.nodes["Background"].inputs["Color"]
+    )
+    for engine in ("CYCLES", "KOMOREBI"):
+        yield from previewed(world, engine)
+    expect_alike(0.02)
+""")  # fmt: skip
