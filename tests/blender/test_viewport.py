@@ -64,7 +64,7 @@ def expect_final(orthographic=False):
     assert same.mean() > 0.985, same.mean()
     assert abs(shown.mean() - expected.mean()) < 1e-3
     yield from w.finished()
-    screen = w.screen(FOLDER, "screen")
+    screen = w.screen()
     linear = np.clip(shown[:, :, :3], 0, 1)
     display = np.where(linear < 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     off = np.abs(screen - display).max(axis=2)

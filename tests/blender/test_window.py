@@ -84,11 +84,12 @@ def run(text, folder):
         f"import sys; sys.path.insert(0, {str(support.HERE)!r})\nimport support; support.enable()\n"
         + text
     )
-    with screen() as display:
+    with screen(frame_buffer=folder) as display:
         done = support.process(
             [bpy.app.binary_path, "--factory-startup", "--no-window-focus", "-p", "0", "0", "960",
              "540", "--python-exit-code", "3", "-P", path],
             timeout=120, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1",
+            KOMOREBI_SCREEN=str(folder / "Xvfb_screen0"),
         )  # fmt: skip
     assert "DONE" in done.output, done
     return done

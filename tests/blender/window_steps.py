@@ -76,12 +76,10 @@ def finished(limit=60.0):
     raise AssertionError(f"not finished: {states}, {space().shading.type}, {bpy.context.engine}")
 
 
-def screen(folder, name):
-    """What the window shows, [height, width, 3] from 0 to 1, row 0 at the bottom."""
-    path = os.path.join(folder, name + ".png")
-    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
-        bpy.ops.screen.screenshot(filepath=path)
-    image = bpy.data.images.load(path)
-    pixels = np.array(image.pixels[:], np.float32).reshape(image.size[1], image.size[0], -1)
-    bpy.data.images.remove(image)
-    return pixels[:, :, :3]
+def screen():
+    """What the window shows, which is all of the display: [height, width, 3] from 0 to 1, row 0 at
+    the bottom. Blender's own screenshot is black in 5.2."""
+    window = bpy.context.window_manager.windows[0]
+    with open(os.environ["KOMOREBI_SCREEN"], "rb") as file:
+        pixels = np.frombuffer(file.read()[-4 * window.width * window.height :], np.uint8)
+    return pixels.reshape(window.height, window.width, 4)[::-1, :, 2::-1].astype(np.float32) / 255
