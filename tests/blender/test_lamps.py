@@ -195,8 +195,9 @@ def test_fast_gi_reads_factor_and_distance_of_the_world(folder):
     light.data.energy = 0.0
     scene.komorebi.bounces = 0
     scene.world = bpy.data.worlds.new("World")
-    scene.world.color = (0.5, 0.5, 0.5)
-    scene.world.use_nodes = False
+    scene.world.use_nodes = True
+    background = scene.world.node_tree.nodes["Background"]
+    background.inputs["Color"].default_value = (0.5, 0.5, 0.5, 1.0)
     scene.world.light_settings.ao_factor = 0.25
     expect(folder, 0.5 * math.pi)
     scene.komorebi.use_fast_gi = True
