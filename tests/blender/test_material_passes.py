@@ -57,7 +57,8 @@ def twice():
     mask = aov_node(tree, "Mask")
     tree.links.new(value_of(tree, "ShaderNodeRGB", (0.1, 0.7, 0.4, 1.0)), mask.inputs["Value"])
     hidden = aov_node(tree, "Mask")
-    hidden.inputs["Value"].default_value, hidden.mute = 100.0, True
+    hidden.mute = True
+    hidden.inputs["Value"].default_value = 100.0 if hidden.mute else 0.0  # 5.2 mutes no outputs
     return material
 
 
