@@ -58,6 +58,10 @@ def parser() -> argparse.ArgumentParser:
         metavar="RESULT",
         help="tables of an earlier result, or of several together; nothing is measured",
     )
+    made.add_argument(
+        "--reference", type=int, nargs=2, metavar=("SEEDS", "SAMPLES"),
+        help="pictures: of the references that errors are measured against (8 512)",
+    )  # fmt: skip
     made.add_argument("--json", type=Path, help="write the result here too")
     made.add_argument("--markdown", type=Path, help="write the tables here")
     return made

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -192,6 +192,8 @@ def time_scene(scene: Scene, cycles: Way, ours: Way, effort: Effort, truth: dict
 def measure(options: argparse.Namespace) -> list[Row]:
     """The scenes that were named, or all of them; a scene whose file is not there is left out."""
     effort = Effort(rounds=options.rounds or (3 if options.full else 1), size=options.size)
+    if options.reference is not None:
+        effort = replace(effort, reference=tuple(options.reference))
     chosen = [s for s in SCENES if not options.scene or s.name in options.scene]
     if options.quick:
         effort = Effort((2, 32), 1, (160, 90), True)
