@@ -125,13 +125,10 @@ def leaf_color(u: float, v: float) -> tuple[float, ...]:
     return (*((0.35, 0.5, 0.15) if rib else (0.15, 0.4, 0.08)), 1.0 if inside else 0.0)
 
 
-def leaves() -> None:
-    """Leaves that are cut out of cards by a picture's alpha, and let light through: 400 of them."""
-    empty_scene(240, 160)
-    cut = picture("Leaf", 64, leaf_color)
-    _floor(9.0, material("Earth", lambda t: diffuse(t, (0.5, 0.4, 0.3))))
+def leaf(cut: Any) -> Callable[[Any], Any]:
+    """What a picture's alpha cuts out of a card, of which a part of the light comes through."""
 
-    def leaf(tree: Any) -> Any:
+    def build(tree: Any) -> Any:
         texture = add(tree, "TexImage", image=cut)
         color = texture.outputs["Color"]
         through = add(tree, "BsdfTranslucent", {"Color": color}).outputs[0]
@@ -139,11 +136,19 @@ def leaves() -> None:
         nothing = add(tree, "BsdfTransparent").outputs[0]
         return mix(tree, texture.outputs["Alpha"], nothing, green)
 
+    return build
+
+
+def leaves() -> None:
+    """Leaves that are cut out of cards by a picture's alpha, and let light through: 400 of them."""
+    empty_scene(240, 160)
+    cut = picture("Leaf", 64, leaf_color)
+    _floor(9.0, material("Earth", lambda t: diffuse(t, (0.5, 0.4, 0.3))))
     card = add_rectangle("Leaf", (-0.25, 0.0, 0.0), (0.5, 0.0, 0.0), (0.0, 0.7, 0.15))
     layer = card.data.uv_layers.new(name="UVMap")
     for loop, uv in zip(layer.data, ((0, 0), (1, 0), (1, 1), (0, 1)), strict=True):
         loop.uv = uv
-    card.data.materials.append(material("Leaf", leaf))
+    card.data.materials.append(material("Leaf", leaf(cut)))
     chance = random.Random(7)
     for number in range(400):
         copy = card if number == 0 else link(bpy.data.objects.new("Leaf", card.data))

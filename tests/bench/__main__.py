@@ -19,6 +19,7 @@ from bench import (
     machine,
     meshes,
     motion,
+    noise,
     options,
     pictures,
     ray_tables,
@@ -42,6 +43,7 @@ PARTS: dict[str, Part] = {
     "curves": ("1 minute", curves.measure, curves.tables),
     "motion": ("1 minute", motion.measure, motion.tables),
     "scale": ("3 minutes", scale.measure, scale.tables),
+    "noise": ("2 minutes", noise.measure, noise.tables),
 }
 
 

@@ -8,7 +8,18 @@ from pathlib import Path
 from bench.scenes import SCENES
 from bench.sources import SOURCES
 
-PARTS = ("build", "rays", "memory", "pictures", "export", "instances", "curves", "motion", "scale")
+PARTS = (
+    "build",
+    "rays",
+    "memory",
+    "pictures",
+    "export",
+    "instances",
+    "curves",
+    "motion",
+    "scale",
+    "noise",
+)
 
 
 def size(word: str) -> tuple[int, int]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench import core, export, meshes, pictures, render, scenes
+from bench import core, export, meshes, noise, pictures, render, scenes
 
 USER = Path(os.environ.get("KOMOREBI_USER", meshes.PROJECT / "build" / "user"))
 if not Path(scenes.PYTHON).is_file() or not (USER / "scripts/addons/komorebi").exists():
@@ -40,6 +40,16 @@ def test_both_engines_are_brought_to_equal_error_and_timed(scene, monkeypatch):
     # References are kept: the second time nothing is rendered.
     monkeypatch.setattr(render, "render", None)
     assert render.reference(scene, "CYCLES", 2, 64).shape == (2, 36, 64, 3)
+
+
+def test_noise_needs_no_references(scene, monkeypatch):
+    monkeypatch.setattr(noise, "SCENES", (scene,))
+    monkeypatch.setattr(render, "SMALL", (64, 36))
+    few, many = noise.measure_scene(scene, 2), noise.measure_scene(scene, 16)
+    for engine in ("cycles", "komorebi"):
+        assert many[f"{engine}_variance"] < few[f"{engine}_variance"] / 4
+        assert many[f"{engine}_seconds"] > 0.0
+    assert len(noise.tables([few])[0].rows) == 1
 
 
 def test_export_measures_every_case_in_every_blender():

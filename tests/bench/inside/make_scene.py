@@ -20,8 +20,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "blend_scenes"))
 
 from common import add_camera, add_rectangle, empty_scene, link, set_world
-from materials import leaf_color, tile_color
-from nodes import add, diffuse, material, mix, picture
+from materials import leaf, leaf_color, tile_color
+from nodes import add, diffuse, material, picture
 
 SIDE = 100  # instances along each side of the field
 SPACING = 2.6  # metres from one to the next
@@ -99,21 +99,6 @@ def tiles() -> Any:
     return material("Tiled", lambda t: diffuse(t, add(t, "TexImage", image=image).outputs["Color"]))
 
 
-def leaf() -> Any:
-    """A leaf on a card, of which a part of the light comes through."""
-    cut = picture("Leaf", 512, leaf_color)
-
-    def build(tree: Any) -> Any:
-        texture = add(tree, "TexImage", image=cut)
-        color = texture.outputs["Color"]
-        through = add(tree, "BsdfTranslucent", {"Color": color}).outputs[0]
-        green = mix(tree, 0.4, diffuse(tree, color), through)
-        nothing = add(tree, "BsdfTransparent").outputs[0]
-        return mix(tree, texture.outputs["Alpha"], nothing, green)
-
-    return material("Leaf", build)
-
-
 def leaves(positions: np.ndarray, corners: np.ndarray) -> None:
     """The dragon on tiles among 64 trees of 2,000 leaves."""
     stone = mesh_object("Dragon", standing(positions, 1.44), corners)
@@ -129,7 +114,7 @@ def leaves(positions: np.ndarray, corners: np.ndarray) -> None:
     quad = np.stack([-side, side, side + 2 * up, -side + 2 * up], axis=1) * 0.09
     points = (middle + np.array([0.0, 0.0, 2.6]))[:, None] + quad
     tree = mesh_object("Tree", points.reshape(-1, 3), np.arange(4 * count).reshape(-1, 4))
-    with_picture(tree, leaf())
+    with_picture(tree, material("Leaf", leaf(picture("Leaf", 512, leaf_color))))
     places = random.uniform(-9.0, 9.0, (200, 2))
     places = [p for p in places if np.hypot(*p) > 1.8 and not (abs(p[0]) < 1.2 and p[1] < 0)][:64]
     for number, place in enumerate(places):
