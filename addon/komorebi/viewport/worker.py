@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -65,7 +65,6 @@ class Statistics:
     rays: int = 0
     seconds: float = 0.0
     stage: str = ""
-    warnings: list[str] = field(default_factory=list)
 
 
 class Worker:
@@ -77,7 +76,6 @@ class Worker:
         self._wanted = _Wanted()
         self._condition = threading.Condition()
         self._scene: Any = None  # core.Scene
-        self._parts: Any = None
         self._settings: dict[str, Any] = {}
         self._source = "Combined"
         self._background: float | None = None
@@ -152,7 +150,7 @@ class Worker:
                     self._take_back(request)
             except Exception as error:
                 self._fail(error)
-        self._scene = self._parts = None
+        self._scene = None
         keys.close(id(self))
 
     def _take_back(self, request: SceneRequest) -> None:
@@ -173,12 +171,9 @@ class Worker:
         parts = native_scene.load(self._core, request.data, 0.0, threads, cancel)
         scene = native_scene.build(self._core, request.data, parts, None, threads, cancel)
         keys.show(id(self), shown)
-        self._parts, self._scene, self._settings = parts, scene, request.settings
+        self._scene, self._settings = scene, request.settings
         self._source, self._background = request.source, request.background
-        self.statistics = Statistics(
-            scene.triangle_count, scene.byte_count,
-            warnings=[*parts.warnings, *(s for mesh in parts.meshes for s in mesh.warnings)],
-        )  # fmt: skip
+        self.statistics = Statistics(scene.triangle_count, scene.byte_count)
 
     def _is_over(self) -> bool:
         return self._wanted.changed
