@@ -71,9 +71,6 @@ void barycentric_change(const Placed& placed, const ShadeTask& task, const Vec3*
   }
 }
 
-/// Attributes of which the name begins so are how much the rest of the name changes by a step.
-constexpr std::string_view kStepNames[] = {"dx:", "dy:", "cone_x:", "cone_y:"};
-
 /// The way back from the world to the film of a camera without a panorama's projection: where a
 /// point is seen, in pixels from the bottom left of the frame.
 class FilmPlace {

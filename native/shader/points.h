@@ -69,10 +69,12 @@ inline constexpr PointInputInfo kPointInputInfo[kPointInputs] = {
     {"object_z", 3},
 };
 
-/// Whether an attribute's name asks for how much the rest of it changes by a step in the surface:
-/// to the next pixel, or to the end of a ray's cone.
+/// Attributes of which the name begins so are how much the rest of it changes by a step in the
+/// surface: to the next pixel, or to the end of a ray's cone.
+inline constexpr std::string_view kStepNames[] = {"dx:", "dy:", "cone_x:", "cone_y:"};
+
 inline bool asks_for_step(std::string_view attribute) {
-  for (const std::string_view step : {"dx:", "dy:", "cone_x:", "cone_y:"}) {
+  for (const std::string_view step : kStepNames) {
     if (attribute.starts_with(step)) return true;
   }
   return false;
