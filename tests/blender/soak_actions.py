@@ -39,11 +39,19 @@ def meshes():
     return [o for o in scene().objects if o.type == "MESH"]
 
 
+def set_mode(name):
+    """Whether that could be: an object may be hidden, in all views or in this one alone."""
+    with bpy.context.temp_override(**w.view()):
+        if not bpy.ops.object.mode_set.poll():
+            return False
+        bpy.ops.object.mode_set(mode=name)
+    return True
+
+
 def object_mode():
     active = bpy.context.window_manager.windows[0].view_layer.objects.active
     if active is not None and active.mode != "OBJECT":
-        with bpy.context.temp_override(**w.view()):
-            bpy.ops.object.mode_set(mode="OBJECT")
+        set_mode("OBJECT")
 
 
 def active_mesh(random):
@@ -261,15 +269,14 @@ def minimise(random):
 @action(3)
 def mode(random):
     active_mesh(random)
-    with bpy.context.temp_override(**w.view()):
-        bpy.ops.object.mode_set(mode=random.choice(("EDIT", "SCULPT", "WEIGHT_PAINT", "OBJECT")))
+    set_mode(random.choice(("EDIT", "SCULPT", "WEIGHT_PAINT", "OBJECT")))
 
 
 @action(2)
 def edit_in_edit_mode(random):
     obj = active_mesh(random)
-    with bpy.context.temp_override(**w.view()):
-        bpy.ops.object.mode_set(mode="EDIT")
+    if not set_mode("EDIT"):
+        return
     yield 0.02
     edited = bmesh.from_edit_mesh(obj.data)
     for vertex in edited.verts:
