@@ -41,7 +41,7 @@ def meshes():
 
 def set_mode(name):
     """Whether that could be: an object may be hidden, in all views or in this one alone."""
-    with bpy.context.temp_override(**w.view()):
+    with w.override():
         if not bpy.ops.object.mode_set.poll():
             return False
         bpy.ops.object.mode_set(mode=name)
@@ -124,7 +124,7 @@ def add(random):
     object_mode()
     if len(meshes()) >= MESHES:
         return remove(random)
-    with bpy.context.temp_override(**w.view()):
+    with w.override():
         kind = random.choice(("monkey", "cube", "ico_sphere", "torus"))
         getattr(bpy.ops.mesh, f"primitive_{kind}_add")(location=place(random))
 
@@ -221,19 +221,19 @@ def border(random):
 @action(1)
 def local_view(random):
     active_mesh(random)
-    with bpy.context.temp_override(**w.view()):
+    with w.override():
         bpy.ops.view3d.localview(frame_selected=False)
 
 
 @action(1)
 def quad_view(_random):
-    with bpy.context.temp_override(**w.view()):
+    with w.override():
         bpy.ops.screen.region_quadview()
 
 
 @action(2)
 def split_or_close(random):
-    with bpy.context.temp_override(**w.view()):
+    with w.override():
         areas = [a for a in bpy.context.screen.areas if a.type == "VIEW_3D"]
         if bpy.context.screen.show_fullscreen:
             return
@@ -246,7 +246,7 @@ def split_or_close(random):
 
 @action(2)
 def full_screen(random):
-    with bpy.context.temp_override(**w.view()):
+    with w.override():
         bpy.ops.screen.screen_full_area(use_hide_panels=random.random() < 0.5)
 
 
@@ -292,7 +292,7 @@ def undo_step(_random):
 
 @action(2)
 def undo(random):
-    with bpy.context.temp_override(**w.view()):
+    with w.override():
         step = random.choice((bpy.ops.ed.undo, bpy.ops.ed.undo, bpy.ops.ed.redo))
         if step.poll():
             step()
@@ -318,7 +318,7 @@ def add_on(random):
 def other_scene(random):
     object_mode()
     window = bpy.context.window_manager.windows[0]
-    with bpy.context.temp_override(**w.view()):
+    with w.override():
         bpy.ops.scene.new(type=random.choice(("LINK_COPY", "FULL_COPY", "EMPTY")))
     yield random.uniform(0, 0.1)
     made = window.scene
@@ -347,5 +347,5 @@ def final_render(_random):
         return
     scene().render.resolution_x, scene().render.resolution_y = 64, 48
     komorebi().samples = 1
-    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+    with w.override({"window": bpy.context.window_manager.windows[0]}):
         bpy.ops.render.render()

@@ -62,7 +62,7 @@ def plain():
     scene().render.film_transparent = scene().render.use_border = False
     scene().render.preview_pixel_size = "AUTO"
     if len(v.views()) >= 4:
-        with bpy.context.temp_override(**w.view()):
+        with w.override():
             bpy.ops.screen.region_quadview()
         yield 0.2
     for view in v.views():
@@ -73,7 +73,7 @@ def plain():
         view["view"].view_perspective = "PERSP"
         view["view"].view_distance = 20.0
         if space.local_view is not None:
-            with bpy.context.temp_override(**v.override(view)):
+            with w.override(v.override(view)):
                 bpy.ops.view3d.localview(frame_selected=False)
     scene().update_tag()
     yield from look()

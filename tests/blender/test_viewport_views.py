@@ -28,7 +28,7 @@ def run(folder, steps, size="960x540"):
 def test_quad_view(folder):
     run(folder, """
     yield from w.alone()
-    with bpy.context.temp_override(**w.view()):
+    with w.override():
         bpy.ops.screen.region_quadview()
     yield 0.3
     yield from rendered()
@@ -37,7 +37,7 @@ def test_quad_view(folder):
     bpy.data.objects["Suzanne"].location.x = 1.0  # an edit reaches all four
     yield 0.1
     assert (yield from v.expect_all("quad edited")) == 4
-    with bpy.context.temp_override(**w.view()):
+    with w.override():
         bpy.ops.screen.region_quadview()
     yield 0.3
     assert (yield from v.expect_all("single again")) == 1
@@ -48,12 +48,12 @@ def test_quad_view(folder):
 def test_areas_and_windows_at_once(folder):
     run(folder, """
     display = x_windows.Display()
-    with bpy.context.temp_override(**w.view()):
+    with w.override():
         bpy.ops.screen.area_split(direction="VERTICAL", factor=0.4)
         bpy.ops.wm.window_new_main()  # with a scene of its own
     yield 0.5
     first, second = bpy.context.window_manager.windows
-    with bpy.context.temp_override(window=second, area=second.screen.areas[0]):
+    with w.override({"window": second, "area": second.screen.areas[0]}):
         bpy.ops.screen.screen_full_area(use_hide_panels=True)
     yield 0.3
     second.screen.areas[0].type = "VIEW_3D"
@@ -78,7 +78,7 @@ def test_areas_and_windows_at_once(folder):
     yield 0.3
     yield from rendered()  # a scene that a window had not shown yet is looked at anew
     assert (yield from v.expect_all("another scene")) == 3
-    with bpy.context.temp_override(window=second):
+    with w.override({"window": second}):
         bpy.ops.wm.window_close()
     yield 0.3
     assert (yield from v.expect_all("one window again")) == 2
@@ -139,7 +139,7 @@ def test_a_clipping_region_is_nothing_to_rendered_views(folder):
     yield from rendered()
     yield from w.finished()
     before = v.shown(v.views()[0])
-    with bpy.context.temp_override(**w.view()):
+    with w.override():
         bpy.ops.view3d.clip_border(xmin=300, xmax=560, ymin=150, ymax=400)
     yield 0.2
     assert w.space().region_3d.use_clip_planes
@@ -171,12 +171,12 @@ def test_render_region_and_local_view(folder):
     space.use_render_border = False
     for obj in bpy.data.objects:
         obj.select_set(obj.name == "Suzanne")
-    with bpy.context.temp_override(**w.view()):
+    with w.override():
         bpy.ops.view3d.localview(frame_selected=False)
     yield 0.3
     yield from w.finished()
     local = v.shown(v.views()[0])
-    with bpy.context.temp_override(**w.view()):
+    with w.override():
         bpy.ops.view3d.localview(frame_selected=False)
     yield 0.3
     for obj in bpy.data.objects:

@@ -214,7 +214,7 @@ def expect_camera(name):
     """The view through the scene's camera shows its final render, within its frame and border."""
     view = views()[0]
     scene = view["window"].scene
-    with bpy.context.temp_override(**override(view)):
+    with w.override(override(view)):
         bpy.ops.view3d.view_center_camera()
         bpy.ops.view3d.zoom_camera_1_to_1()
     yield 0.1
