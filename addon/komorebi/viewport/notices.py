@@ -1,5 +1,5 @@
-"""What a viewport warns of: each sentence once in the console and the Info editor, and how many
-there are, with the first of them, in the viewport's own text.
+"""What a viewport warns of: each sentence once in the Info editor and so in the console, and how
+many there are, with the first of them, in the viewport's own text.
 """
 
 from __future__ import annotations
@@ -23,8 +23,6 @@ class Notices:
         self.sentences = list(dict.fromkeys(sentences))
         new = [s for s in self.sentences if s not in self._said]
         self._said.update(new)
-        for sentence in new:
-            print(f"Komorebi: viewport: {sentence}", flush=True)
         _report(new)
 
     @property
