@@ -15,8 +15,9 @@ import numpy as np
 
 from .. import native_scene
 from ..scene_data import FloatArray, SceneData
-from . import keys
-from .view_camera import Rect, ViewCamera, coarse_view
+from . import keys, studio_blur
+from .denoising import DenoisingRequest, ViewDenoiser
+from .view_camera import ViewCamera, coarse_view
 
 POLL_SECONDS = 0.01
 # How wide the pixels of the pictures are that come before the final ones.
@@ -31,6 +32,8 @@ class SceneRequest:
     settings: dict[str, Any]  # the core's
     source: str  # the core's pass that is shown
     background: float | None = None  # how opaque the world is; None: as the film says
+    blur: float = 0.0  # of a studio light behind the scene, 0 to 1
+    denoising: DenoisingRequest | None = None
 
 
 @dataclass(slots=True)
@@ -42,6 +45,7 @@ class Picture:
     pixel: int  # how wide its pixels are on the screen
     sample: int
     samples: int
+    is_denoised: bool = False
 
 
 @dataclass(slots=True)
@@ -54,6 +58,7 @@ class _Wanted:
     paused: bool = False
     stopped: bool = False
     cancel: Any = None  # of the build that is on
+    is_for_view: bool = False  # the build that is on is of no use to another view
 
 
 @dataclass(slots=True)
@@ -76,13 +81,16 @@ class Worker:
         self._wanted = _Wanted()
         self._condition = threading.Condition()
         self._scene: Any = None  # core.Scene
+        self._built: tuple[SceneData, native_scene.Parts] | None = None  # what it is made of
         self._settings: dict[str, Any] = {}
         self._source = "Combined"
         self._background: float | None = None
         self._is_idle = False
         self.picture: Picture | None = None
         self.error = ""
+        self.warnings: list[str] = []  # of the build
         self.statistics = Statistics()
+        self.denoiser = ViewDenoiser(self._show_picture)
         self._thread = threading.Thread(target=self._run, name="komorebi-viewport", daemon=True)
         self._thread.start()
 
@@ -100,6 +108,8 @@ class Worker:
             if view == self._wanted.view:
                 return
             self._wanted.view, self._wanted.changed = view, True
+            if self._wanted.is_for_view:
+                self._interrupt()
             self._condition.notify_all()
 
     @property
@@ -142,7 +152,7 @@ class Worker:
                 cancel = self._wanted.cancel = self._core.Cancel()
             try:
                 if request is not None:
-                    self._build(request, cancel)
+                    self._build(request, cancel, view)
                 if self._scene is not None and view is not None:
                     self._render(view)
             except self._core.Cancelled:
@@ -150,7 +160,8 @@ class Worker:
                     self._take_back(request)
             except Exception as error:
                 self._fail(error)
-        self._scene = None
+        self._scene = self._built = None
+        self.denoiser.close()
         keys.close(id(self))
 
     def _take_back(self, request: SceneRequest) -> None:
@@ -161,19 +172,45 @@ class Worker:
 
     def _fail(self, error: Exception) -> None:
         self.error = str(error)
-        self._scene = None
+        self._scene = self._built = None
         self._redraw()
 
-    def _build(self, request: SceneRequest, cancel: Any) -> None:
+    def _build(self, request: SceneRequest, cancel: Any, view: ViewCamera | None) -> None:
         self.error, self.statistics = "", Statistics(stage="Building the scene")
         threads = request.settings["threads"]
         shown = {mesh.key.geometry for mesh in request.data.meshes if mesh.key is not None}
+        studio_blur.blur(self._core, request.data.world, request.blur, threads)
         parts = native_scene.load(self._core, request.data, 0.0, threads, cancel)
-        scene = native_scene.build(self._core, request.data, parts, None, threads, cancel)
+        eye = None if view is None else coarse_view(self._core, view, 1).camera
+        scene = native_scene.build(self._core, request.data, parts, None, threads, cancel, eye)
+        self._built, self.warnings = (request.data, parts), native_scene.warnings(parts)
         keys.show(id(self), shown)
         self._scene, self._settings = scene, request.settings
         self._source, self._background = request.source, request.background
+        self.denoiser.configure(request.denoising)
         self.statistics = Statistics(scene.triangle_count, scene.byte_count)
+
+    def _come_near(self, view: ViewCamera) -> bool:
+        """Builds the tree over instances anew when the view is so far from where it was built for
+        that floats are coarse there; False when something else is wanted."""
+        eye = coarse_view(self._core, view, 1).camera
+        if self._built is None or not self._scene.is_far_from_origin(eye):
+            return True
+        with self._condition:
+            if self._wanted.changed:
+                return False
+            cancel = self._wanted.cancel = self._core.Cancel()
+            self._wanted.is_for_view = True
+        data, parts = self._built
+        threads = self._settings["threads"]
+        try:
+            self._scene = native_scene.build(self._core, data, parts, None, threads, cancel, eye)
+        except self._core.Cancelled:
+            return False
+        finally:
+            with self._condition:
+                self._wanted.is_for_view = False
+        return True
 
     def _is_over(self) -> bool:
         return self._wanted.changed
@@ -182,6 +219,8 @@ class Worker:
         """Picture after picture until the last sample, or until something else is wanted."""
         final = self._settings["pixel_size"]
         for pixel in (*(p * final for p in COARSE), final):
+            if pixel == final and not self._come_near(view):
+                return
             if not self._render_at(view, pixel, pixel == final):
                 return
 
@@ -195,6 +234,7 @@ class Worker:
                 "use_adaptive_sampling": False,
             }  # fmt: skip
         settings["region"] = coarse.region
+        self.denoiser.begin()
         session = self._core.Session(self._scene, self._core.Settings(**settings), coarse.camera)
         try:
             sample = 0
@@ -208,9 +248,9 @@ class Worker:
                 if over or progress["sample"] > sample:
                     sample = progress["sample"]
                     if over or sample > 0:
-                        self._publish(view, session, coarse.region, pixel, progress, is_final)
+                        self._publish(view, session, pixel, progress, is_final, over)
                 if over:
-                    return True
+                    return self.denoiser.is_finished(self._is_over)
                 if self._wanted.paused:
                     self._stand_still(session)
         finally:
@@ -225,16 +265,24 @@ class Worker:
         session.resume()
 
     def _publish(
-        self, view: ViewCamera, session: Any, region: Rect, pixel: int, progress: Any,
-        is_final: bool,
-    ) -> None:  # fmt: skip
+        self, view: ViewCamera, session: Any, pixel: int, progress: Any, is_final: bool, over: bool
+    ) -> None:
+        statistics = self.statistics
+        statistics.rays, statistics.seconds = progress["rays"], progress["elapsed"]
+        sample = progress["sample"] if is_final else 0
+        denoises = is_final and self.denoiser.takes(sample, over)
+        if self.denoiser.has_shown and not denoises:
+            return
         pixels = session.read(self._source)
         if self._background is not None:
             pixels[:, :, :3] += np.float32(self._background) * session.read("Environment")
             pixels[:, :, 3] += np.float32(self._background) * (1.0 - pixels[:, :, 3])
-        statistics = self.statistics
-        statistics.rays, statistics.seconds = progress["rays"], progress["elapsed"]
-        self.picture = Picture(
-            view, pixels, pixel, progress["sample"] if is_final else 0, self._settings["samples"]
-        )
+        picture = Picture(view, pixels, pixel, sample, self._settings["samples"])
+        if denoises:
+            self.denoiser.offer(picture, [session.read(name) for name in self.denoiser.guides])
+        if not self.denoiser.has_shown:
+            self._show_picture(picture)
+
+    def _show_picture(self, picture: Picture) -> None:
+        self.picture = picture
         self._redraw()
