@@ -54,6 +54,12 @@ class PreviewSettings:
         "one may take; 0 goes on for ever",
         default=64, min=0, max=1 << 24,
     )  # fmt: skip
+    preview_start_resolution: IntProperty(
+        name="Start Resolution",
+        description="Pixels of the viewport's first picture along its longer side, at most; finer "
+        "ones follow",
+        default=256, min=8, max=16384, subtype="PIXEL",
+    )  # fmt: skip
     preview_pause: BoolProperty(
         name="Pause Preview", description="The rendered viewport stands still", default=False
     )

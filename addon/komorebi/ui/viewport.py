@@ -56,7 +56,9 @@ class KOMOREBI_RENDER_PT_performance_viewport(KomorebiPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Any) -> None:
-        self.column().prop(context.scene.render, "preview_pixel_size", text="Pixel Size")
+        column = self.column()
+        column.prop(context.scene.render, "preview_pixel_size", text="Pixel Size")
+        column.prop(context.scene.komorebi, "preview_start_resolution", text="Start Pixels")
 
 
 class ShadingPanel:

@@ -33,6 +33,10 @@ PASSES = {
     "INSTANCE_INDEX": "Instance Index",
 }  # fmt: skip
 
+# How long a redraw waits for the picture of a new view or scene, once: so that a view that turns is
+# drawn as it is, and not once more as it was. Longer ones come when they are there.
+WAIT_SECONDS = 0.03
+
 
 class Viewport:
     """Lives as long as the engine's instance, which is that of one viewport."""
@@ -41,7 +45,7 @@ class Viewport:
         self._worker = Worker(core.load(), _redrawer(engine))
         self._drawing = Drawing()
         self._unchanged = Unchanged()
-        self._exposure = 1.0
+        self._awaits = False  # whether the next redraw waits for a picture
         self._error = ""
         self._render_pass = ""
         self.notices = Notices()
@@ -89,15 +93,21 @@ class Viewport:
         settings = export_settings(scene, depsgraph.view_layer, passes, (0, 0, 1, 1))
         denoising = denoising_of(scene, source, settings["threads"])
         kept = [source] if denoising is None else [source, *denoising.guides]
-        settings |= preview_settings(scene) | {"passes": kept, "pixel_size": _pixel_size(scene)}
+        settings |= preview_settings(scene) | {"passes": kept}
         exposed = source in EXPOSED and settings["method"] == "WORLD_LIGHT"
-        self._exposure = scene.komorebi.film_exposure if exposed else 1.0
         self._render_pass = space.shading.komorebi.render_pass
         background = background_of(space) if source == "Combined" else None
         if background is not None:
             settings |= {"film_transparent": True, "passes": [*kept, "Environment"]}
-        blur = blur_of(space)
-        self._worker.show(SceneRequest(data, settings, source, background, blur, denoising))
+        self._worker.show(
+            SceneRequest(
+                data, settings, source, background, blur_of(space), denoising,
+                exposure=scene.komorebi.film_exposure if exposed else 1.0,
+                pixel_size=_pixel_size(scene),
+                start_resolution=scene.komorebi.preview_start_resolution,
+            )
+        )  # fmt: skip
+        self._awaits = True
 
     def draw(self, engine: Any, context: Any, depsgraph: Any) -> None:
         """Blender draws the region: shows what there is, and has the rest rendered."""
@@ -111,11 +121,13 @@ class Viewport:
         if context.space_data.shading.komorebi.render_pass != self._render_pass:
             self.update(engine, context, depsgraph)  # Blender tells nobody
         self._worker.pause(context.scene.komorebi.preview_pause)
-        self._worker.look(view)
+        if self._worker.look(view) or self._awaits:
+            self._awaits = False
+            self._worker.await_picture(WAIT_SECONDS)
         picture = self._worker.picture
         error = self.error
         if picture is not None and not error:
-            self._drawing.draw(engine, depsgraph.scene, picture, self._exposure)
+            self._drawing.draw(engine, depsgraph.scene, picture)
         if self._worker.warnings is not self._loaded:
             self._loaded = self._worker.warnings
             self.notices.hold([*self._exported, *self._loaded])

@@ -21,7 +21,7 @@ import bpy
 import numpy as np
 from mathutils import Quaternion, Vector
 
-sys.path[:0] = [str(Path(__file__).resolve().parents[2] / "blender"), str(Path(__file__).parent)]
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "blender"))
 import support
 
 TICK_SECONDS = 0.005
