@@ -77,8 +77,10 @@ def rendered():
 """
 
 
-def run(folder, steps):
-    text = SCENE.format(folder=str(folder)) + "\ndef steps():\n" + steps + "\nw.start(steps())\n"
+def run(folder, steps, more=""):
+    """`steps` are the body of a generator; `more` is what it calls besides SCENE's."""
+    text = SCENE.format(folder=str(folder)) + more
+    text += "\ndef steps():\n" + steps + "\nw.start(steps())\n"
     return test_window.run(text, folder)
 
 
