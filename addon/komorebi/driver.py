@@ -179,7 +179,7 @@ def _render_view(engine: Any, frame: Frame, parts: native_scene.Parts, view: Vie
     scene, settings = _native_work(engine, cancel, build)
     if not engine.is_preview and dump.write(scene, settings):
         return
-    session = _native_work(engine, cancel, lambda: native.Session(scene, settings))
+    session = _native_work(engine, cancel, lambda: native.Session(scene, settings, cancel=cancel))
     writer = ResultWriter(
         engine, frame.layer, view.name, frame.region, frame.passes, frame.exposure
     )

@@ -9,6 +9,7 @@ namespace komorebi {
 namespace {
 
 constexpr std::uint32_t kBlack = kLeastRgbeExponent << 24;
+constexpr std::uint32_t kBandRows = 32;  ///< put in at a time
 
 }  // namespace
 
@@ -20,6 +21,25 @@ LightMap::LightMap(std::string name, std::uint32_t width, std::uint32_t height)
   }
 }
 
+LightMap make_light_map(std::string name, std::uint32_t width, std::uint32_t height,
+                        std::span<const float> texels, const Cancel& cancel) {
+  LightMap map(std::move(name), width, height);
+  if (texels.size() != 3 * map.texel_count()) {
+    throw std::invalid_argument("environment \"" + map.name() +
+                                "\": " + std::to_string(3 * map.texel_count()) +
+                                " values expected, " + std::to_string(texels.size()) + " given");
+  }
+  std::vector<float> band;
+  for (std::uint32_t row = 0; row < height; row += kBandRows) {
+    cancel.check();
+    const std::uint32_t rows = std::min(kBandRows, height - row);
+    const auto part = texels.subspan(std::size_t{3} * width * row, std::size_t{3} * width * rows);
+    band.assign(part.begin(), part.end());
+    map.put(row, rows, band.data());
+  }
+  return map;
+}
+
 void LightMap::put(std::uint32_t first, std::uint32_t count, float* rgb) {
   if (words_ == nullptr && floats_ == nullptr) {
     words_.reset(new std::uint32_t[texel_count()]);
@@ -28,6 +48,7 @@ void LightMap::put(std::uint32_t first, std::uint32_t count, float* rgb) {
   const std::size_t texels = std::size_t{count} * width_;
   clean(rgb, texels);
   while (!store(std::uint64_t{first} * width_, texels, rgb)) widen();
+  is_blank_ = false;
 }
 
 void LightMap::clean(float* p, std::size_t texels) {
@@ -74,7 +95,7 @@ void LightMap::widen() {
     wider.storage_ = LightStorage::kHalf;
     wider.words_.reset(new std::uint32_t[(3 * count + 1) / 2]());
     bool exact = true;
-    for (std::uint64_t i = 0; i < count && exact; ++i) {
+    for (std::uint64_t i = 0; i < count && exact && !is_blank_; ++i) {
       const Vec3 value = texel(i);
       exact = wider.store(i, 1, &value.x);
     }
@@ -84,8 +105,8 @@ void LightMap::widen() {
   }
   if (wider.storage_ == LightStorage::kFloat) {
     wider.words_.reset();
-    wider.floats_.reset(new float[3 * count]);
-    for (std::uint64_t i = 0; i < count; ++i) {
+    wider.floats_.reset(new float[3 * count]());
+    for (std::uint64_t i = 0; i < count && !is_blank_; ++i) {
       const Vec3 value = texel(i);
       std::copy_n(&value.x, 3, wider.floats_.get() + 3 * i);
     }
