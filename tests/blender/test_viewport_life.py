@@ -264,3 +264,21 @@ def test_other_engines_and_loads_while_it_renders(folder):
     yield from rendered()
     assert (yield from v.expect_all("loaded")) == 1
 """)  # fmt: skip
+
+
+def test_a_view_that_cannot_be_rendered_takes_nothing_with_it(folder):
+    run(folder, """
+    yield from rendered()
+    space = w.space()
+    space.clip_start, space.clip_end = 20.0, 10.0
+    yield 0.3
+    for _ in range(100):
+        if w.viewports()[-1].error:
+            break
+        yield 0.1
+    assert w.viewports()[-1].error
+    space.clip_start, space.clip_end = 0.1, 100.0
+    yield 0.1
+    assert (yield from v.expect_all("as before")) == 1
+    assert not w.viewports()[-1].error
+""")  # fmt: skip

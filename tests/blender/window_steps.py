@@ -72,9 +72,7 @@ def _all_wait():
     """Whether every thread but this waits for a condition, and so runs nothing of Python's."""
     frames = sys._current_frames()
     others = [t.ident for t in threading.enumerate() if t is not threading.current_thread()]
-    return all(
-        i in frames and frames[i].f_code.co_filename == threading.__file__ for i in others
-    )
+    return all(i in frames and frames[i].f_code.co_filename == threading.__file__ for i in others)
 
 
 def alone():
