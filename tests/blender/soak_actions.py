@@ -123,7 +123,8 @@ def edit_mesh(random):
 def add(random):
     object_mode()
     if len(meshes()) >= MESHES:
-        return remove(random)
+        remove(random)
+        return
     with w.override():
         kind = random.choice(("monkey", "cube", "ico_sphere", "torus"))
         getattr(bpy.ops.mesh, f"primitive_{kind}_add")(location=place(random))
