@@ -228,10 +228,10 @@ def test_undo_and_redo(folder):
                         operator()
                 yield 0.02 * (step % 2)
 
-    yield from steps_back_and_forth(40)  # more than Blender keeps steps
+    yield from steps_back_and_forth(12)
     before = yield from closed()
     w.space().shading.type = "RENDERED"
-    yield from steps_back_and_forth(40)
+    yield from steps_back_and_forth(24)
     after = yield from closed()
     print("MEMORY", before, after, flush=True)
     assert after[0] - before[0] < 20e6 and after[1] <= before[1], (before, after)
