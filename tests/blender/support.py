@@ -303,7 +303,7 @@ def resident_bytes():
         ctypes.CDLL(None).malloc_trim(0)
     with contextlib.suppress(OSError, AttributeError):
         jemalloc = ctypes.CDLL("libjemalloc.so.2", os.RTLD_NOLOAD | os.RTLD_NOW)
-        jemalloc.mallctl(b"arena.4096.purge", None, None, None, 0)  # 4096: of all arenas
+        jemalloc.mallctl(b"arena.4096.purge", None, None, None, ctypes.c_size_t(0))  # of all
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
