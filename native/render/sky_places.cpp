@@ -145,14 +145,14 @@ void SkyPlaces::choose_tables(const SkySurvey& survey) {
     chosen.resize(kMostTables);
   }
   for (const std::uint32_t i : chosen) {
-    const Vec2 middle((static_cast<float>(i % SkyPlacesView::kBins) + 0.5f) * 2.0f /
-                              static_cast<float>(SkyPlacesView::kBins) -
-                          1.0f,
-                      (static_cast<float>(i % kBins / SkyPlacesView::kBins) + 0.5f) * 2.0f /
-                              static_cast<float>(SkyPlacesView::kBins) -
-                          1.0f);
-    tables_.push_back(
-        {i / kBins, SkyVisibility::side(direction_from_octahedral(middle)), i % kBins});
+    const std::uint32_t column = i % SkyPlacesView::kBins;
+    const std::uint32_t row = i % kBins / SkyPlacesView::kBins;
+    const auto middle = [](std::uint32_t at) {
+      return (2.0f * static_cast<float>(at) + 1.0f) / static_cast<float>(SkyPlacesView::kBins) -
+             1.0f;
+    };
+    const Vec3 normal = direction_from_octahedral(Vec2(middle(column), middle(row)));
+    tables_.push_back({i / kBins, SkyVisibility::side(normal), i % kBins});
   }
   std::sort(tables_.begin(), tables_.end(), [](const Table& a, const Table& b) {
     return std::tie(a.place, a.side, a.bin) < std::tie(b.place, b.side, b.bin);
