@@ -17,13 +17,13 @@ def previewed(thing, engine):
     thing.asset_generate_preview()
     # 3.4 ends by a fault, whatever the engine, when a preview is asked for before the last one is
     # done, and cannot be asked: done is what has appeared and does not change any more.
-    end, still = time.monotonic() + 60, 0
+    end, still = time.monotonic() + 90, 0
     while still < 10:
         yield 0.15
         assert time.monotonic() < end, "no preview"
         now = pixels_of(thing)
         has_come = now.any() and (before.shape != now.shape or not np.array_equal(before, now)
-                                  or time.monotonic() > end - 50)
+                                  or time.monotonic() > end - 80)
         still = still + 1 if has_come and np.array_equal(last, now) else 0
         last = now
     shown[engine] = now

@@ -90,7 +90,7 @@ class Worker:
         self.error = ""
         self.warnings: list[str] = []  # of the build
         self.statistics = Statistics()
-        self.denoiser = ViewDenoiser(self._show_picture)
+        self.view_denoiser = ViewDenoiser(self._show_picture)
         self._thread = threading.Thread(target=self._run, name="komorebi-viewport", daemon=True)
         self._thread.start()
 
@@ -161,7 +161,7 @@ class Worker:
             except Exception as error:
                 self._fail(error)
         self._scene = self._built = None
-        self.denoiser.close()
+        self.view_denoiser.close()
         keys.close(id(self))
 
     def _take_back(self, request: SceneRequest) -> None:
@@ -187,7 +187,7 @@ class Worker:
         keys.show(id(self), shown)
         self._scene, self._settings = scene, request.settings
         self._source, self._background = request.source, request.background
-        self.denoiser.configure(request.denoising)
+        self.view_denoiser.configure(request.denoising)
         self.statistics = Statistics(scene.triangle_count, scene.byte_count)
 
     def _come_near(self, view: ViewCamera) -> bool:
@@ -234,7 +234,7 @@ class Worker:
                 "use_adaptive_sampling": False,
             }  # fmt: skip
         settings["region"] = coarse.region
-        self.denoiser.begin()
+        self.view_denoiser.begin()
         session = self._core.Session(self._scene, self._core.Settings(**settings), coarse.camera)
         try:
             sample = 0
@@ -250,7 +250,7 @@ class Worker:
                     if over or sample > 0:
                         self._publish(view, session, pixel, progress, is_final, over)
                 if over:
-                    return self.denoiser.is_finished(self._is_over)
+                    return self.view_denoiser.is_finished(self._is_over)
                 if self._wanted.paused:
                     self._stand_still(session)
         finally:
@@ -270,8 +270,8 @@ class Worker:
         statistics = self.statistics
         statistics.rays, statistics.seconds = progress["rays"], progress["elapsed"]
         sample = progress["sample"] if is_final else 0
-        denoises = is_final and self.denoiser.takes(sample, over)
-        if self.denoiser.has_shown and not denoises:
+        denoises = is_final and self.view_denoiser.takes(sample, over)
+        if self.view_denoiser.has_shown and not denoises:
             return
         pixels = session.read(self._source)
         if self._background is not None:
@@ -279,8 +279,10 @@ class Worker:
             pixels[:, :, 3] += np.float32(self._background) * (1.0 - pixels[:, :, 3])
         picture = Picture(view, pixels, pixel, sample, self._settings["samples"])
         if denoises:
-            self.denoiser.offer(picture, [session.read(name) for name in self.denoiser.guides])
-        if not self.denoiser.has_shown:
+            self.view_denoiser.offer(
+                picture, [session.read(name) for name in self.view_denoiser.guides]
+            )
+        if not self.view_denoiser.has_shown:
             self._show_picture(picture)
 
     def _show_picture(self, picture: Picture) -> None:
