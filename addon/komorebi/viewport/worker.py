@@ -105,7 +105,7 @@ class Worker:
         self.error = ""
         self.warnings: list[str] = []  # of the build
         self.statistics = Statistics()
-        self.denoiser = ViewDenoiser(self._show_picture)
+        self.view_denoiser = ViewDenoiser(self._show_picture)
         self._thread = threading.Thread(target=self._run, name="komorebi-viewport", daemon=True)
         self._thread.start()
 
@@ -204,7 +204,7 @@ class Worker:
             except Exception as error:
                 self._fail(error)
         self._scene = self._built = self._request = None
-        self.denoiser.close()
+        self.view_denoiser.close()
         keys.close(id(self))
 
     def _end_build(self) -> None:
@@ -235,7 +235,7 @@ class Worker:
         self._built, self.warnings = (request.data, parts), native_scene.warnings(parts)
         keys.show(id(self), shown)
         self._scene, self._request = scene, request
-        self.denoiser.configure(request.denoising)
+        self.view_denoiser.configure(request.denoising)
         self.statistics = Statistics(scene.triangle_count, scene.byte_count)
 
     def _come_near(self, view: ViewCamera, threads: int) -> bool:
@@ -284,7 +284,7 @@ class Worker:
     ) -> bool:  # fmt: skip
         """Whether it came to its end."""
         coarse = coarse_view(self._core, view, pixel)
-        self.denoiser.begin()
+        self.view_denoiser.begin()
         session = self._core.Session(
             self._scene, self._core.Settings(**settings | {"region": coarse.region}), coarse.camera
         )
@@ -313,7 +313,7 @@ class Worker:
                 sample, shown = progress["sample"], now
                 self._publish(view, session, pixel, progress, is_final, over)
             if over:
-                return self.denoiser.is_finished(self._is_over)
+                return self.view_denoiser.is_finished(self._is_over)
             if self._wanted.paused and self._wanted.gives_way:
                 self._stand_still(session)
 
@@ -331,8 +331,8 @@ class Worker:
         statistics = self.statistics
         statistics.rays, statistics.seconds = progress["rays"], progress["elapsed"]
         sample = progress["sample"] if is_final else 0
-        denoises = is_final and self.denoiser.takes(sample, over)
-        if self.denoiser.has_shown and not denoises:
+        denoises = is_final and self.view_denoiser.takes(sample, over)
+        if self.view_denoiser.has_shown and not denoises:
             return
         request = self._request
         assert request is not None
@@ -344,8 +344,10 @@ class Worker:
             view, pixels, pixel, sample, request.settings["samples"], self._serial, request.exposure
         )
         if denoises:
-            self.denoiser.offer(picture, [session.read(name) for name in self.denoiser.guides])
-        if not self.denoiser.has_shown:
+            self.view_denoiser.offer(
+                picture, [session.read(name) for name in self.view_denoiser.guides]
+            )
+        if not self.view_denoiser.has_shown:
             self._show_picture(picture)
 
     def _show_picture(self, picture: Picture) -> None:
