@@ -241,6 +241,7 @@ def test_pictures_become_finer_and_none_is_missed(folder):
     pixels = [pixel for pixel, _, _ in last]
     assert pixels[0] == 16 and pixels[-1] == 1, shown
     assert all(b <= a // 2 for a, b in zip(pixels, pixels[1:]) if a > 1), shown
+    assert len(set(pixels)) == pixels.index(1) + 1, shown  # each once
     assert (1, 0) in {entry[:2] for entry in last}, shown  # all pixels, before the first sample
     assert last[-1][:2] == (1, scene.komorebi.preview_samples), shown
     # A mesh that changes all the time is seen all the same, and is right in the end.

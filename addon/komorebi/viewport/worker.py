@@ -309,7 +309,8 @@ class Worker:
             if session.error:
                 raise RuntimeError(session.error)
             now = time.monotonic()
-            if over or (progress["sample"] > sample and now - shown >= REDRAW_SECONDS):
+            is_new = is_final and progress["sample"] > sample
+            if over or (is_new and now - shown >= REDRAW_SECONDS):
                 sample, shown = progress["sample"], now
                 self._publish(view, session, pixel, progress, is_final, over)
             if over:
