@@ -283,13 +283,19 @@ class Worker:
         gives_way: bool,
     ) -> bool:  # fmt: skip
         """Whether it came to its end."""
+        with self._condition:
+            self._wanted.gives_way = gives_way
+            if self._is_over():
+                return False
         coarse = coarse_view(self._core, view, pixel)
         self.view_denoiser.begin()
         session = self._core.Session(
             self._scene, self._core.Settings(**settings | {"region": coarse.region}), coarse.camera
         )
         with self._condition:
-            self._wanted.session, self._wanted.gives_way = session, gives_way
+            self._wanted.session = session
+            if self._is_over():  # since then
+                session.cancel()
         try:
             return self._follow(session, view, pixel, is_final)
         finally:
