@@ -95,6 +95,8 @@ def late(window: Window, seconds: float) -> list[float]:
     """Mean and 95th percentile of a timer's lateness, in seconds."""
     window.call("start_lateness")
     time.sleep(seconds)
+    while window.call("late_count") < 20:  # Blender draws
+        time.sleep(0.1)
     lateness = sorted(window.call("stop_lateness"))
     return [sum(lateness) / len(lateness), lateness[math.ceil(0.95 * len(lateness)) - 1]]
 
@@ -141,6 +143,7 @@ class _Rounds:
                 done = edit(window, "move_object", MANY)
                 found.setdefault(("all_samples", engine), []).append(done)
                 window.call("shade", "SOLID")
+                window.watch(0.5)
         cycles, komorebi = (found["all_samples", engine] for engine in ENGINES)
         for theirs, ours in zip(cycles, komorebi, strict=True):
             if "last" in theirs and "last" in ours:
