@@ -53,8 +53,13 @@ def edit(window: Window, name: str, samples: int) -> dict[str, Any]:
     window.send(name)
     seen = window.watch(QUIET[samples], first=FIRST_SECONDS)
     began = window.answer()["began"]
+
+    def is_full(when: float, pixels: np.ndarray) -> bool:
+        counts = name != "switch" or is_rendered(pixels)
+        return when > began and counts and block_size(pixels) == 1
+
     more = seen
-    while more and not any(when > began and block_size(p) == 1 for when, p in seen):
+    while more and not any(is_full(*one) for one in seen):
         more = window.watch(QUIET[samples], first=FIRST_SECONDS)  # a slow machine
         seen = seen + more
     changed = []
