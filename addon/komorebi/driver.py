@@ -137,8 +137,7 @@ def render_frame(engine: Any, _depsgraph: Any, frame: Frame) -> None:
         engine, cancel,
         lambda: native_scene.load(native, frame.scene, _expected_rays(frame), threads, cancel),
     )  # fmt: skip
-    _warn_environment(engine, parts.world.environment)
-    for sentence in [*parts.warnings, *(s for mesh in parts.meshes for s in mesh.warnings)]:
+    for sentence in native_scene.warnings(parts):
         reporting.warn(engine, sentence)
     for view in frame.views:
         _render_view(engine, frame, parts, view)
@@ -222,14 +221,11 @@ def _denoised(engine: Any, session: Any, frame: Frame) -> FloatArray | None:
     width, height, settings = x_max - x_min, y_max - y_min, frame.settings
     albedo, normal = denoise.guides(session, width, height)
     picture = session.read("Combined", 0, 0, width, height)
-    kill = denoise.Kill()
     try:
-        return background.run(
-            lambda: denoise.denoised(
-                frame.oidn, picture, albedo, normal, settings["threads"], kill
-            ),
-            engine.test_break, kill,
-        )  # fmt: skip
+        with denoise.Denoiser(frame.oidn, settings["threads"]) as denoiser:
+            return background.run(
+                lambda: denoiser.denoise(picture, (albedo, normal)), engine.test_break, denoiser
+            )
     except RenderCancelled:
         return None
 
@@ -241,14 +237,3 @@ def _said(data: SceneData, parts: native_scene.Parts) -> str:
     simpler = native_surfaces.simplified(data.materials)
     simplified = f"Simplified: {simpler}" if simpler else ""
     return " | ".join(filter(None, (trees, lamps, simplified)))
-
-
-def _warn_environment(engine: Any, environment: Any | None) -> None:
-    if environment is None:
-        return
-    for count, what in (
-        (environment.nonfinite_texels, "are not finite"),
-        (environment.negative_texels, "are negative"),
-    ):
-        if count:
-            reporting.warn(engine, f"environment map: {count} pixels {what}, rendered as black")

@@ -66,11 +66,26 @@ def load(core: Any, data: SceneData, expected_rays: float, threads: int, cancel:
     return parts
 
 
+def warnings(parts: Parts) -> list[str]:
+    """Sentences on what of them is rendered otherwise than it was meant."""
+    said = []
+    environment = parts.world.environment
+    if environment is not None:
+        for count, what in (
+            (environment.nonfinite_texels, "are not finite"),
+            (environment.negative_texels, "are negative"),
+        ):
+            if count:
+                said.append(f"environment map: {count} pixels {what}, rendered as black")
+    return [*said, *parts.warnings, *(s for mesh in parts.meshes for s in mesh.warnings)]
+
+
 def build(
-    core: Any, data: SceneData, parts: Parts, camera: CameraData | None, threads: int, cancel: Any
-) -> Any:
-    """A committed core.Scene, seen by `camera` (None: whoever renders it says by which); only the
-    tree over instances is built here."""
+    core: Any, data: SceneData, parts: Parts, camera: CameraData | None, threads: int, cancel: Any,
+    eye: Any = None,
+) -> Any:  # fmt: skip
+    """A committed core.Scene, seen by `camera` (None: whoever renders it says by which, and first
+    by the core.Camera `eye`, if that is known); only the tree over instances is built here."""
     scene = core.Scene()
     indices = [scene.add_mesh(mesh) for mesh in parts.meshes]
     for group in data.instances:
@@ -101,6 +116,8 @@ def build(
         )  # fmt: skip
     if camera is not None:
         _set_camera(scene, camera)
+    elif eye is not None:
+        scene.set_eye(eye)
     scene.commit(threads=threads, cancel=cancel, keep_inputs=dump.is_wanted())
     return scene
 

@@ -7,6 +7,7 @@ import bpy
 from bpy.props import StringProperty
 
 from . import dump
+from .viewport import notices
 
 
 class KOMOREBI_OT_dump(bpy.types.Operator):
@@ -46,9 +47,38 @@ class KOMOREBI_OT_dump(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class KOMOREBI_OT_report_warnings(bpy.types.Operator):
+    """Reports what the rendered viewport warns of"""
+
+    bl_idname = "komorebi.report_warnings"
+    bl_label = "Report Warnings"
+    bl_options = {"INTERNAL"}
+
+    _timer: Any = None
+
+    def invoke(self, context: Any, event: Any) -> set[str]:
+        self._timer = context.window_manager.event_timer_add(0.01, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: Any, event: Any) -> set[str]:
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        context.window_manager.event_timer_remove(self._timer)
+        for sentence in notices.taken():
+            self.report({"WARNING"}, f"Komorebi: {sentence}")
+        return {"FINISHED"}
+
+
+CLASSES = (KOMOREBI_OT_dump, KOMOREBI_OT_report_warnings)
+
+
 def register() -> None:
-    bpy.utils.register_class(KOMOREBI_OT_dump)
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
 
 
 def unregister() -> None:
-    bpy.utils.unregister_class(KOMOREBI_OT_dump)
+    notices.drop()
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -15,6 +15,7 @@ from bpy.props import (
 )
 
 from .callbacks import studio_light_names, update_render_passes
+from .preview_properties import VIEW_PASSES, PreviewSettings
 
 METHODS = (
     ("AMBIENT_OCCLUSION", "Ambient Occlusion", "How much of a white sky each point sees"),
@@ -36,20 +37,6 @@ SKIES = (
 AO_SAMPLINGS = (
     ("COSINE", "Cosine", "Rays by the cosine of their angle to the normal: the least noise"),
     ("UNIFORM", "Uniform", "Rays evenly over the hemisphere: same result, more noise"),
-)
-VIEW_PASSES = (
-    ("COMBINED", "Combined", "The picture"),
-    ("EMISSION", "Emission", "What shines"),
-    ("ENVIRONMENT", "Environment", "The world behind everything"),
-    ("AO", "Ambient Occlusion", "How much of a white sky each point sees, within the distance"),
-    ("SKY_VISIBILITY", "Sky Visibility", "The same at any distance"),
-    ("DIFFUSE_COLOR", "Diffuse Color", "The colour of surfaces"),
-    ("NORMAL", "Normal", "Where surfaces face"),
-    ("BENT_NORMAL", "Bent Normal", "Where most light of a white sky comes from"),
-    ("POSITION", "Position", "Where surfaces are"),
-    ("UV", "UV", "The active UV map"),
-    ("DEPTH", "Depth", "How far away surfaces are"),
-    ("MIST", "Mist", "How far away surfaces are, by the world's mist"),
 )
 ENVIRONMENT_SAMPLINGS = (
     ("MIS", "Multiple Importance", "The next two together, each where it is good at it"),
@@ -77,7 +64,7 @@ class KomorebiViewSettings(bpy.types.PropertyGroup):
     )  # fmt: skip
 
 
-class KomorebiSceneSettings(bpy.types.PropertyGroup):
+class KomorebiSceneSettings(PreviewSettings, bpy.types.PropertyGroup):
     """Settings of the Komorebi render engine"""
 
     method: EnumProperty(
@@ -88,14 +75,6 @@ class KomorebiSceneSettings(bpy.types.PropertyGroup):
         description="Camera samples a pixel; with a noise threshold the most that one may take",
         default=32, min=1, max=1 << 24,
     )  # fmt: skip
-    preview_samples: IntProperty(
-        name="Viewport Samples",
-        description="Camera samples a pixel in the viewport; 0 goes on for ever",
-        default=64, min=0, max=1 << 24,
-    )  # fmt: skip
-    preview_pause: BoolProperty(
-        name="Pause Preview", description="The rendered viewport stands still", default=False
-    )
     # Off, though Cycles has it on: at these few samples it is no sooner at the same error (ambient
     # occlusion, 192 × 108: 0.0047 in 0.78 s both ways; 8 % sooner at 0.0028), and parts of a
     # picture that are to be put together need every sample. The threshold is automatic, for

@@ -1,12 +1,19 @@
-"""Warnings: each one once a job (a still or a whole animation), with a count at its end."""
+"""Warnings: each one once a job (a still or a whole animation), with a count at its end.
+
+A viewport, which no job renders, collects its own.
+"""
 
 from __future__ import annotations
 
 import re
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 _counts: dict[str, int] = {}
 _frames = 0
+_local = threading.local()
 
 
 def begin() -> None:
@@ -29,11 +36,27 @@ def warn(engine: Any, sentence: str) -> None:
     """
     if engine.is_preview:  # of something that is still being made
         return
+    collected = getattr(_local, "collected", None)
+    if collected is not None:
+        collected.append(sentence)
+        return
     text = "Komorebi: " + re.sub("error", "err.", sentence, flags=re.IGNORECASE)
     known = text in _counts
     _counts[text] = _counts.get(text, 0) + 1
     if not known:
         engine.report({"WARNING"}, text)
+
+
+@contextmanager
+def collected() -> Iterator[list[str]]:
+    """What is warned of meanwhile, on this thread, goes into the list and nowhere else."""
+    before = getattr(_local, "collected", None)
+    sentences: list[str] = []
+    _local.collected = sentences
+    try:
+        yield sentences
+    finally:
+        _local.collected = before
 
 
 def end() -> None:

@@ -348,10 +348,9 @@ void bind_scene(py::module_& module) {
           "that of the world, where there is nothing else.")
       .def("set_surfaces", &set_surfaces, py::arg("surfaces"),
            py::arg("instance_random") = py::none(),
-           "Of each material of set_tables (SurfaceProgram to camera rays, SurfaceProgram to rays "
-           "that bounce light or None if it is the same, Program of the transparency to light "
-           "rays or None if it is opaque). instance_random: float32, a number from 0 to 1 for each "
-           "instance that was added.")
+           "Of each material of set_tables (SurfaceProgram to camera rays, to rays that bounce "
+           "light or None if it is the same, Program of the transparency to light rays or None if "
+           "it is opaque). instance_random: float32, from 0 to 1 for each instance.")
       .def(
           "set_world_color",
           [](Scene& scene, const std::array<float, 3>& c) {
@@ -367,9 +366,8 @@ void bind_scene(py::module_& module) {
             scene.set_world_program(std::move(program), max_radiance);
           },
           py::arg("program"), py::arg("max_radiance") = 0.0f,
-          "What camera rays see behind the scene, in place of the colour or map that lights it: a "
-          "program with three outputs, radiance. max_radiance: a bound of what is too small to be "
-          "found, such as a sun's disc.")
+          "What camera rays see instead: three outputs, radiance. max_radiance: a bound of what is "
+          "too small to be found, such as a sun's disc.")
       .def("set_camera", &set_camera, py::arg("kind"), py::arg("matrix"), py::arg("clip_start"),
            py::arg("clip_end"), py::arg("width"), py::arg("height"), py::kw_only(),
            py::arg("lens") = py::none(), py::arg("panorama") = py::none(),
@@ -382,14 +380,15 @@ void bind_scene(py::module_& module) {
            "panorama_type. shutter: dict of curve, float32 [N], weights at even times from the "
            "opening to the closing (uniform without), and rolling_duration for a rolling shutter; "
            "or still=True: it stays shut, rays see the poses at rest, and those of instances and "
-           "camera in time are what the pass Vector compares. "
-           "motion: dict of matrices, world from camera at an odd number of even times, the middle "
-           "one at rest, float64 [2k + 1, 4, 4], and zoom_open and zoom_close: how much wider a "
-           "perspective view is then, tan of half the angle over that at rest.")
+           "camera in time are what the pass Vector compares. motion: dict of matrices, world from "
+           "camera at an odd number of even times, the middle one at rest, float64 [2k + 1, 4, 4], "
+           "and zoom_open and zoom_close: tan of half a perspective's angle over that at rest.")
+      .def("set_eye", &Scene::set_eye, py::arg("camera"),
+           "Positions are the most exact at this Camera's eye.")
+      .def("is_far_from_origin", &Scene::is_far_from_origin, py::arg("camera"))
       .def("commit", &commit, py::arg("threads") = 0, py::arg("cancel") = std::shared_ptr<Cancel>(),
            py::arg("keep_inputs") = true,
-           "Builds the tree over instances; the scene is read only from here on. keep_inputs: for "
-           "dump(); without, matrices are given back, 152 bytes an instance.")
+           "Builds the tree over instances. keep_inputs: for dump(), 152 bytes an instance.")
       .def_property_readonly("triangle_count", &Scene::triangle_count)
       .def_property_readonly("instance_count", &Scene::instance_count)
       .def_property_readonly("invisible_count", &Scene::invisible_count)

@@ -159,6 +159,11 @@ void Scene::set_camera(const CameraDesc& camera) {
   has_camera_ = true;
 }
 
+void Scene::set_eye(const CameraDesc& camera) {
+  require_open();
+  eye_ = make_camera(camera, Vec3d(0.0)).origin;
+}
+
 void Scene::add_lamp(LampInput lamp) {
   require_open();
   check_lamp(lamp);
@@ -275,10 +280,13 @@ void Scene::choose_origin() {
   const double longest = std::max({extent.x, extent.y, extent.z});
   if (!(longest > 0.0)) return;
   length_ = longest;
-  if (!has_camera_) return;
-  const double step = std::exp2(std::floor(std::log2(longest / 256.0)));
-  const Vec3d eye = make_camera(camera_desc_, Vec3d(0.0)).origin;
-  origin_ = step * glm::round(glm::clamp(eye, lo, hi) / step);
+  origins_ = OriginGrid(lo, hi);
+  if (has_camera_) eye_ = make_camera(camera_desc_, Vec3d(0.0)).origin;
+  if (eye_) origin_ = origins_.nearest(*eye_);
+}
+
+bool Scene::is_far_from_origin(const CameraDesc& camera) const {
+  return origins_.is_far(make_camera(camera, Vec3d(0.0)).origin, origin_);
 }
 
 void Scene::build_tree(ThreadPool& pool, const Cancel& cancel) {

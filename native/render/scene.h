@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "render/instance_motion.h"
 #include "render/lamps.h"
 #include "render/mesh.h"
+#include "render/origin.h"
 #include "render/scene_tables.h"
 #include "shader/program.h"
 
@@ -59,6 +61,10 @@ class Scene {
   /// @param max_radiance  a bound of what is too small to be found (a sun's disc)
   void set_world_program(std::shared_ptr<const Program> program, float max_radiance = 0.0f);
   void set_camera(const CameraDesc& camera);
+  /// Of a scene without a camera, whose sessions bring their own: where the first of them looks
+  /// from. Positions are floats from an origin that commit chooses by the eye; without one it is
+  /// the middle of the scene.
+  void set_eye(const CameraDesc& camera);
   /// Throws std::invalid_argument naming the lamp when a number of it is out of range.
   void add_lamp(LampInput lamp);
   /// Throws std::invalid_argument when lists of slots name what is not there.
@@ -106,6 +112,9 @@ class Scene {
   }
 
   const Vec3d& origin() const { return origin_; }
+  /// Whether commit would choose an origin for this camera that is more than OriginGrid::kFarSteps
+  /// from the one that is: what the camera sees close by is coarser than it could be.
+  bool is_far_from_origin(const CameraDesc& camera) const;
   const std::vector<std::shared_ptr<const Mesh>>& meshes() const { return meshes_; }
   /// What was added, for whoever writes it down; throws std::invalid_argument if commit has given
   /// it back.
@@ -166,6 +175,8 @@ class Scene {
   std::vector<LampInput> lamp_inputs_;
 
   Vec3d origin_{0.0};
+  OriginGrid origins_;
+  std::optional<Vec3d> eye_;
   double length_ = 1.0;  // of the bounds' longest side
   LampTable lamps_;
   std::vector<std::shared_ptr<const Mesh>> traced_meshes_;  // meshes_, then the flattened ones

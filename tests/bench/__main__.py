@@ -24,6 +24,7 @@ from bench import (
     pictures,
     ray_tables,
     scale,
+    viewport,
 )  # fmt: skip
 from bench.progress import say
 from bench.tables import Table
@@ -44,6 +45,7 @@ PARTS: dict[str, Part] = {
     "motion": ("1 minute", motion.measure, motion.tables),
     "scale": ("3 minutes", scale.measure, scale.tables),
     "noise": ("2 minutes", noise.measure, noise.tables),
+    "viewport": ("10 minutes", viewport.measure, viewport.tables),
 }
 
 

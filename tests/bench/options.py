@@ -19,6 +19,7 @@ PARTS = (
     "motion",
     "scale",
     "noise",
+    "viewport",
 )
 
 

@@ -10,7 +10,7 @@ LAMP_NODES = "a light's nodes are edited in the node editor"
 LAMP_SETTINGS = "one strategy finds lamps, and its choice among many has no settings"
 GUIDING = "light rays are guided by what surfaces see of the sky, bounces by the cosine alone"
 OWN_DISTANCE = "all objects have the world's AO distance"
-VIEWPORT = "the rendered viewport has no such settings yet"
+VIEWPORT = "presets, hair and debugging of the viewport are not there"
 BAKING = "there is no baking"
 MATERIALS = "displacement is always relief, and surfaces that shine light nothing else yet"
 COPY = "a copy for the node editor of what the properties editor shows"
@@ -22,6 +22,7 @@ REPLACED = {
     "CYCLES_RENDER_PT_sampling": "KOMOREBI_RENDER_PT_sampling",
     "CYCLES_RENDER_PT_sampling_render": "KOMOREBI_RENDER_PT_sampling_render",
     "CYCLES_RENDER_PT_sampling_render_denoise": "KOMOREBI_RENDER_PT_sampling_render_denoise",
+    "CYCLES_RENDER_PT_sampling_viewport_denoise": ("KOMOREBI_RENDER_PT_sampling_viewport_denoise"),
     "CYCLES_RENDER_PT_sampling_advanced": "KOMOREBI_RENDER_PT_sampling_advanced",
     "CYCLES_RENDER_PT_sampling_advanced_sample_subset": "KOMOREBI_RENDER_PT_sampling_advanced",
     "CYCLES_RENDER_PT_light_paths": "KOMOREBI_RENDER_PT_light_paths",
@@ -88,7 +89,6 @@ LEFT_OUT = {
     "CYCLES_PT_viewport_sampling_presets": VIEWPORT,
     "CYCLES_PT_integrator_presets": "presets of Cycles' settings",
     "CYCLES_PT_performance_presets": "presets of Cycles' settings",
-    "CYCLES_RENDER_PT_sampling_viewport_denoise": VIEWPORT,
     "CYCLES_RENDER_PT_sampling_path_guiding": GUIDING,
     "CYCLES_RENDER_PT_sampling_path_guiding_debug": GUIDING,
     "CYCLES_RENDER_PT_sampling_lights": LAMP_SETTINGS,

@@ -177,17 +177,64 @@ def test_cancel_while_denoising(folder):
     import threading
 
     from komorebi.denoise import run
+    from komorebi.errors import RenderCancelled
 
-    kill = run.Kill()
-    threading.Timer(0.2, kill.request).start()
+    denoiser = run.Denoiser("none", 1)
+    threading.Timer(0.2, denoiser.request).start()
     sleeper = folder / "sleeper.py"
     sleeper.write_text("import time\ntime.sleep(60)\n")
     worker, run.WORKER = run.WORKER, str(sleeper)
     plane = np.zeros((4, 4, 4), np.float32)
     try:
-        run.denoised("none", plane, plane[:, :, :3], plane[:, :, :3], 1, kill)
-    except Exception as failure:
-        assert "Denoising" in str(failure)
+        denoiser.denoise(plane, (plane, plane))
+    except RenderCancelled:
+        pass
+    else:
+        raise AssertionError("it was not stopped")
     finally:
         run.WORKER = worker
-    assert kill.process.returncode != 0
+    with denoiser:
+        pass
+    assert denoiser._process.returncode != 0
+
+
+def test_picture_after_picture_in_one_process(folder):
+    """Of any size, with any guides; one that is stopped comes to nothing, and the next one does."""
+    import threading
+
+    from komorebi.denoise import run
+    from komorebi.errors import RenderCancelled
+
+    noise = np.random.default_rng(1).random((512, 512, 4)).astype(np.float32)
+    flat = np.full((512, 512, 3), 0.5, np.float32)
+    with run.Denoiser(library(), 2) as denoiser:
+        for size in (64, 96, 96):
+            for guides in range(3):
+                for prefilter in run.PREFILTERS:
+                    given = noise[:size, :size]
+                    result = denoiser.denoise(
+                        given, [flat[:size, :size]] * guides, prefilter, "BALANCED"
+                    )
+                    assert np.array_equal(result[:, :, 3], given[:, :, 3])
+                    assert result[:, :, :3].std() < 0.5 * given[:, :, :3].std()
+        process = denoiser._process
+        large = np.tile(noise, (4, 4, 1))
+        over = threading.Event()
+
+        def stop():
+            while not over.wait(0.05):
+                denoiser.stop()
+
+        threading.Thread(target=stop).start()
+        try:
+            denoiser.denoise(large, [])
+        except RenderCancelled:
+            pass
+        else:
+            raise AssertionError("it was not stopped")
+        finally:
+            over.set()
+        denoiser.stop()  # what is not on
+        assert denoiser.denoise(noise, []).shape == noise.shape
+        assert denoiser._process is process and process.poll() is None
+    assert process.returncode is not None

@@ -269,3 +269,31 @@ def test_face_corners_anywhere():
     assert offsets.tolist() == [0, 3, 7, 10]
     assert order.tolist() == [7, 8, 9, 0, 1, 2, 3, 4, 5, 6]
     assert order.dtype == offsets.dtype == np.int32
+
+
+def test_structures_are_what_properties_say():
+    """Of old releases: memory that is looked at, against what Blender reads item by item."""
+    from komorebi.compat import GENERIC_ATTRIBUTES, structures
+
+    if GENERIC_ATTRIBUTES:
+        raise support.Skip("corners and faces are attributes")
+    mesh = grid("faces", 6)
+    mesh.polygons.foreach_set("use_smooth", [i % 3 == 0 for i in range(25)])
+    mesh.polygons.foreach_set("material_index", [i % 4 for i in range(25)])
+    for obj in (support.add_object("faces", mesh), bpy.data.objects["Cube"]):
+        if obj.name == "faces":
+            obj.modifiers.new("", "SOLIDIFY")
+        mesh = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+        corners, faces = structures.corners(mesh), structures.faces(mesh)
+        for found, items, name in (
+            (corners["vertex"], mesh.loops, "vertex_index"),
+            (corners["edge"], mesh.loops, "edge_index"),
+            (faces["start"], mesh.polygons, "loop_start"),
+            (faces["total"], mesh.polygons, "loop_total"),
+            (faces["flag"] & structures.SMOOTH, mesh.polygons, "use_smooth"),
+        ):
+            assert found.tolist() == [getattr(item, name) for item in items], name
+    single = bpy.data.meshes.new("single")
+    single.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
+    assert structures.faces(single) is None  # foreach_get is as good
+    assert structures.faces(bpy.data.meshes.new("empty")) is None

@@ -190,3 +190,49 @@ def test_a_dump_names_the_file_it_cannot_write(tmp_path: Path) -> None:
         assert "/nowhere/scene.komorebi" in str(error)
     else:
         raise AssertionError("written to a folder that is not there")
+
+
+def test_a_scene_is_as_exact_as_can_be_where_it_is_looked_from() -> None:
+    """Without an eye positions are from the middle, here 10 km off; with one pictures are those of
+    a scene that has a camera of its own there."""
+    where = np.array([[0.0, 0.0, 0.0], [20000.7, -9000.3, 0.1]])
+    projection = shapes.perspective(2.2, 64 / 48, 0.1, 100.0)
+    far, near = (
+        (
+            "PERSPECTIVE",
+            projection @ shapes.look_at(at + np.array([6, -5, 4]), at),
+            0.1,
+            100.0,
+            64,
+            48,
+        )
+        for at in where
+    )
+
+    def made(eye: object = None, camera: object = None) -> core.Scene:
+        scene = core.Scene()
+        mesh = scene.add_mesh(core.Mesh("cube", *shapes.cube()))
+        matrices = np.tile(np.eye(4), (2, 1, 1))
+        matrices[:, :3, 3] = where
+        scene.add_instances(mesh, matrices, np.zeros(2, np.uint32))
+        scene.set_world_color((1.0, 1.0, 1.0))
+        if camera is not None:
+            scene.set_camera(*camera)
+        if eye is not None:
+            scene.set_eye(core.Camera(*eye))
+        scene.commit()
+        return scene
+
+    def seen(scene: core.Scene) -> np.ndarray:
+        settings = core.Settings(samples=16, passes=("Combined", "Position"))
+        session = shapes.finish(core.Session(scene, settings, core.Camera(*near)))
+        return np.concatenate([session.read("Combined"), session.read("Position")], axis=2)
+
+    middle, there = made(), made(eye=near)
+    assert middle.is_far_from_origin(core.Camera(*near))
+    assert middle.is_far_from_origin(core.Camera(*far))
+    assert there.is_far_from_origin(core.Camera(*far))
+    assert not there.is_far_from_origin(core.Camera(*near))
+    expected = seen(made(camera=near))
+    assert np.array_equal(seen(there), expected)
+    assert not np.array_equal(seen(middle), expected)

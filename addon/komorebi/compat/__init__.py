@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..scene_data import BoolArray, FloatArray, IntArray
+from ..scene_data import FloatArray, IntArray
 from .lights import (
     casts_shadow,
     is_soft,
@@ -34,6 +34,7 @@ from .releases import (
     VORONOI_PCG,
     cycles_or,
 )
+from .topology import corner_verts, face_offsets, face_order, smooth_faces
 
 __all__ = [
     "CORNER_NORMALS",
@@ -48,13 +49,17 @@ __all__ = [
     "VERSION",
     "VORONOI_PCG",
     "casts_shadow",
+    "corner_verts",
     "cycles_or",
+    "face_offsets",
+    "face_order",
     "is_soft",
     "light_factor",
     "light_links",
     "light_tint",
     "max_bounces",
     "normalizes",
+    "smooth_faces",
 ]  # besides what is here
 
 
@@ -95,66 +100,6 @@ def positions(mesh: Any) -> FloatArray:
     else:
         mesh.vertices.foreach_get("co", result)
     return result.reshape(-1, 3)
-
-
-# foreach_get copies memory only into an array of the property's very type, and these indices are
-# unsigned by Blender's own word: int32 takes item by item, 15 times longer.
-
-
-def corner_verts(mesh: Any) -> IntArray:
-    """The vertex of each corner [corners]."""
-    if GENERIC_ATTRIBUTES:
-        result = np.empty(len(mesh.loops), np.int32)
-        mesh.attributes[".corner_vert"].data.foreach_get("value", result)
-        return result
-    unsigned = np.empty(len(mesh.loops), np.uint32)
-    mesh.loops.foreach_get("vertex_index", unsigned)
-    return unsigned.view(np.int32)
-
-
-def face_offsets(mesh: Any) -> tuple[IntArray, IntArray | None]:
-    """First corner of each face and the number of corners [faces + 1], in the order of faces.
-
-    Old releases allow faces whose corners lie anywhere: then also the corners in that order.
-    """
-    faces, corners = len(mesh.polygons), len(mesh.loops)
-    if GENERIC_ATTRIBUTES and corners == 3 * faces:  # triangles all, one after the other
-        return np.arange(0, corners + 3, 3, dtype=np.int32), None
-    starts = np.empty(faces + 1, np.uint32)
-    mesh.polygons.foreach_get("loop_start", starts[:-1])
-    starts[-1] = corners
-    offsets = starts.view(np.int32)
-    if GENERIC_ATTRIBUTES:  # faces lie one after the other
-        return offsets, None
-    totals = np.empty(faces, np.uint32)
-    mesh.polygons.foreach_get("loop_total", totals)
-    if starts[0] == 0 and np.array_equal(starts[:-1] + totals, starts[1:]):
-        return offsets, None
-    return face_order(offsets[:-1], totals.view(np.int32))
-
-
-def face_order(starts: IntArray, totals: IntArray) -> tuple[IntArray, IntArray]:
-    """Offsets [faces + 1] of faces one after the other, and which corners they then take."""
-    offsets = np.zeros(len(starts) + 1, np.int32)
-    np.cumsum(totals, out=offsets[1:])
-    order: IntArray = np.arange(offsets[-1], dtype=np.int32)
-    order += np.repeat(starts - offsets[:-1], totals)
-    return offsets, order
-
-
-def smooth_faces(mesh: Any) -> BoolArray:
-    """True for each face that is shaded smooth [faces]."""
-    faces = len(mesh.polygons)
-    if not GENERIC_ATTRIBUTES:
-        result = np.empty(faces, np.bool_)
-        mesh.polygons.foreach_get("use_smooth", result)
-        return result
-    sharp = mesh.attributes.get("sharp_face")
-    if sharp is None or sharp.domain != "FACE" or sharp.data_type != "BOOLEAN":
-        return np.ones(faces, np.bool_)
-    result = np.empty(faces, np.bool_)
-    sharp.data.foreach_get("value", result)
-    return ~result
 
 
 def has_corner_normals(mesh: Any) -> bool:

@@ -19,6 +19,26 @@ class KOMOREBI_RENDER_PT_sampling(KomorebiPanel, bpy.types.Panel):
         pass  # all of it is in the panels below
 
 
+def draw_noise_threshold(column: Any, settings: Any, prefix: str, is_used: bool) -> None:
+    """Of the final render, or of the viewport (`prefix` "preview_")."""
+    heading = column.column(align=True, heading="Noise Threshold")
+    heading.enabled = is_used
+    row = heading.row(align=True)
+    switch = f"use_{prefix}adaptive_sampling"
+    row.prop(settings, switch, text="")
+    sub = row.row()
+    sub.active = getattr(settings, switch)
+    sub.prop(settings, f"{prefix}adaptive_threshold", text="")
+
+
+def draw_library(column: Any) -> None:
+    """Where the library to denoise with is, or why there is none."""
+    found = library.find()
+    text = found.missing or f"Open Image Denoise: {found.path}"
+    for line in textwrap.wrap(text, 60, break_on_hyphens=False):
+        column.label(text=line)
+
+
 class KOMOREBI_RENDER_PT_sampling_render(KomorebiPanel, bpy.types.Panel):
     bl_label = "Render"
     bl_parent_id = "KOMOREBI_RENDER_PT_sampling"
@@ -27,13 +47,7 @@ class KOMOREBI_RENDER_PT_sampling_render(KomorebiPanel, bpy.types.Panel):
         settings = context.scene.komorebi
         column = self.column()
         in_parts = settings.sample_offset > 0  # where the parts would stop at different samples
-        heading = column.column(align=True, heading="Noise Threshold")
-        heading.enabled = not in_parts
-        row = heading.row(align=True)
-        row.prop(settings, "use_adaptive_sampling", text="")
-        sub = row.row()
-        sub.active = settings.use_adaptive_sampling
-        sub.prop(settings, "adaptive_threshold", text="")
+        draw_noise_threshold(column, settings, "", is_used=not in_parts)
         column = column.column(align=True)
         if settings.use_adaptive_sampling and not in_parts:
             column.prop(settings, "samples", text="Max Samples")
@@ -56,12 +70,9 @@ class KOMOREBI_RENDER_PT_sampling_render_denoise(KomorebiPanel, bpy.types.Panel)
         self.layout.prop(settings, "use_denoising", text="")
 
     def draw(self, context: Any) -> None:
-        found = library.find()
         column = self.column()
         column.active = context.scene.komorebi.use_denoising
-        text = found.missing or f"Open Image Denoise: {found.path}"
-        for line in textwrap.wrap(text, 60, break_on_hyphens=False):
-            column.label(text=line)
+        draw_library(column)
 
 
 class KOMOREBI_RENDER_PT_sampling_advanced(KomorebiPanel, bpy.types.Panel):

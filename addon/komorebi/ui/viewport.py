@@ -7,7 +7,9 @@ from typing import Any
 
 import bpy
 
+from ..denoise import library
 from .base import ENGINE_ID, KomorebiPanel
+from .sampling import draw_library, draw_noise_threshold
 
 
 class KOMOREBI_RENDER_PT_sampling_viewport(KomorebiPanel, bpy.types.Panel):
@@ -15,7 +17,37 @@ class KOMOREBI_RENDER_PT_sampling_viewport(KomorebiPanel, bpy.types.Panel):
     bl_parent_id = "KOMOREBI_RENDER_PT_sampling"
 
     def draw(self, context: Any) -> None:
-        self.column().prop(context.scene.komorebi, "preview_samples", text="Samples")
+        settings = context.scene.komorebi
+        column = self.column()
+        draw_noise_threshold(column, settings, "preview_", is_used=True)
+        column = column.column(align=True)
+        if settings.use_preview_adaptive_sampling:
+            column.prop(settings, "preview_samples", text="Max Samples")
+            column.prop(settings, "preview_adaptive_min_samples", text="Min Samples")
+        else:
+            column.prop(settings, "preview_samples", text="Samples")
+
+
+class KOMOREBI_RENDER_PT_sampling_viewport_denoise(KomorebiPanel, bpy.types.Panel):
+    bl_label = "Denoise"
+    bl_parent_id = "KOMOREBI_RENDER_PT_sampling_viewport"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context: Any) -> None:
+        # What is switched on can be switched off, with a library or without.
+        settings = context.scene.komorebi
+        self.layout.enabled = settings.use_preview_denoising or not library.find().missing
+        self.layout.prop(settings, "use_preview_denoising", text="")
+
+    def draw(self, context: Any) -> None:
+        settings = context.scene.komorebi
+        column = self.column()
+        column.active = settings.use_preview_denoising
+        column.prop(settings, "preview_denoising_input_passes", text="Passes")
+        column.prop(settings, "preview_denoising_prefilter", text="Prefilter")
+        column.prop(settings, "preview_denoising_quality", text="Quality")
+        column.prop(settings, "preview_denoising_start_sample", text="Start Sample")
+        draw_library(column)
 
 
 class KOMOREBI_RENDER_PT_performance_viewport(KomorebiPanel, bpy.types.Panel):
@@ -24,7 +56,9 @@ class KOMOREBI_RENDER_PT_performance_viewport(KomorebiPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Any) -> None:
-        self.column().prop(context.scene.render, "preview_pixel_size", text="Pixel Size")
+        column = self.column()
+        column.prop(context.scene.render, "preview_pixel_size", text="Pixel Size")
+        column.prop(context.scene.komorebi, "preview_start_resolution", text="Start Pixels")
 
 
 class ShadingPanel:
@@ -63,6 +97,7 @@ class KOMOREBI_VIEW3D_PT_shading_lighting(ShadingPanel, bpy.types.Panel):
         column.prop(shading, "studiolight_rotate_z", text="Rotation")
         column.prop(shading, "studiolight_intensity")
         column.prop(shading, "studiolight_background_alpha")
+        column.prop(shading, "studiolight_background_blur")
 
 
 class KOMOREBI_VIEW3D_PT_shading_render_pass(ShadingPanel, bpy.types.Panel):
@@ -83,6 +118,7 @@ def draw_pause(self: Any, context: Any) -> None:
 
 CLASSES = (
     KOMOREBI_RENDER_PT_sampling_viewport,
+    KOMOREBI_RENDER_PT_sampling_viewport_denoise,
     KOMOREBI_RENDER_PT_performance_viewport,
     KOMOREBI_VIEW3D_PT_shading_lighting,
     KOMOREBI_VIEW3D_PT_shading_render_pass,

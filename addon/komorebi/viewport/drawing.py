@@ -10,8 +10,6 @@ from ..scene_data import FloatArray
 from .view_camera import Rect
 from .worker import Picture
 
-LARGEST_HALF = 65504.0  # what overflows a half float would show black
-
 
 class Drawing:
     """The texture of the picture that was drawn last."""
@@ -22,12 +20,13 @@ class Drawing:
         self._batch: Any = None
         self._place: Rect | None = None
 
-    def draw(self, engine: Any, scene: Any, picture: Picture, exposure: float) -> None:
+    def draw(self, engine: Any, scene: Any, picture: Picture) -> None:
         """Within view_draw."""
         import gpu  # not usable in background mode
 
         if picture is not self.picture:
-            self._texture = _texture(gpu, picture, exposure)
+            assert picture.texels is not None
+            self._texture = _texture(gpu, picture.texels)
             self.picture = picture
         gpu.state.blend_set("ALPHA_PREMULT")
         engine.bind_display_space_shader(scene)
@@ -62,28 +61,7 @@ def _image_shader(gpu: Any) -> Any:
         return gpu.shader.from_builtin("2D_IMAGE")
 
 
-def _texture(gpu: Any, picture: Picture, exposure: float) -> Any:
-    pixels = fitted(picture)
-    if exposure != 1.0:
-        pixels[:, :, :3] *= np.float32(exposure)
-    np.clip(pixels, -LARGEST_HALF, LARGEST_HALF, out=pixels)
-    height, width = pixels.shape[:2]
-    buffer = gpu.types.Buffer("FLOAT", width * height * 4, np.ravel(pixels))
+def _texture(gpu: Any, texels: FloatArray) -> Any:
+    height, width = texels.shape[:2]
+    buffer = gpu.types.Buffer("FLOAT", texels.size, np.ravel(texels))
     return gpu.types.GPUTexture((width, height), format="RGBA16F", data=buffer)
-
-
-def fitted(picture: Picture) -> FloatArray:
-    """The picture in pixels of the screen, [height, width, 4], a copy."""
-    view, step = picture.view, picture.pixel
-    pixels = picture.pixels
-    if pixels.shape[2] < 4:
-        alpha = np.ones((*pixels.shape[:2], 1), np.float32)
-        color = np.broadcast_to(pixels, (*pixels.shape[:2], 3))
-        pixels = np.concatenate([color, alpha], axis=2)
-    if step == 1:
-        return np.array(pixels, np.float32, order="C")
-    # The first pixel may begin before the region does.
-    x = (view.region[0] - view.film[0]) % step
-    y = (view.region[1] - view.film[1]) % step
-    large = np.repeat(np.repeat(pixels, step, axis=0), step, axis=1)
-    return np.ascontiguousarray(large[y : y + view.height, x : x + view.width])

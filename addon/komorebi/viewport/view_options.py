@@ -38,6 +38,14 @@ def background_of(space: Any) -> float | None:
     return float(shading.studiolight_background_alpha)
 
 
+def blur_of(space: Any) -> float:
+    """How blurred the studio light is behind the scene, 0 to 1."""
+    shading = space.shading
+    if shading.use_scene_world_render or shading.studiolight_background_alpha == 0.0:
+        return 0.0
+    return float(shading.studiolight_background_blur)
+
+
 def world_of(space: Any) -> WorldData | None:
     """The studio light that takes the scene's world's place; None: the scene's own."""
     shading = space.shading

@@ -7,7 +7,7 @@ import traceback
 import weakref
 from typing import Any
 
-from .. import core
+from .. import core, reporting
 from ..errors import RenderError
 from ..export import export_view
 from ..export.settings import export_settings
@@ -15,17 +15,27 @@ from ..passes import Pass
 from ..result import EXPOSED
 from ..unchanged import Unchanged
 from .drawing import Drawing
+from .notices import Notices
 from .view_camera import view_camera
-from .view_options import background_of, shown_in, world_of
+from .view_options import background_of, blur_of, shown_in, world_of
+from .view_settings import denoising_of, preview_settings
 from .worker import Picture, SceneRequest, Worker
 
 # Of a viewport's Render Pass the core's name.
 PASSES = {
     "COMBINED": "Combined", "EMISSION": "Emission", "ENVIRONMENT": "Environment",
     "AO": "Ambient Occlusion", "SKY_VISIBILITY": "Sky Visibility",
-    "DIFFUSE_COLOR": "Diffuse Color", "NORMAL": "Normal", "BENT_NORMAL": "Bent Normal",
-    "POSITION": "Position", "UV": "UV", "DEPTH": "Depth", "MIST": "Mist",
+    "SHADOW_CATCHER": "Shadow Catcher", "DIFFUSE_COLOR": "Diffuse Color",
+    "BENT_NORMAL": "Bent Normal", "POSITION": "Position", "NORMAL": "Normal", "UV": "UV",
+    "DEPTH": "Depth", "MIST": "Mist", "DENOISING_ALBEDO": "Diffuse Color",
+    "DENOISING_NORMAL": "Denoising Normal", "SAMPLE_COUNT": "Debug Sample Count",
+    "OBJECT_INDEX": "Object Index", "MATERIAL_INDEX": "Material Index",
+    "INSTANCE_INDEX": "Instance Index",
 }  # fmt: skip
+
+# How long a redraw waits for the picture of a new view or scene, once: so that a view that turns is
+# drawn as it is, and not once more as it was. Longer ones come when they are there.
+WAIT_SECONDS = 0.03
 
 
 class Viewport:
@@ -35,9 +45,12 @@ class Viewport:
         self._worker = Worker(core.load(), _redrawer(engine))
         self._drawing = Drawing()
         self._unchanged = Unchanged()
-        self._exposure = 1.0
+        self._awaits = False  # whether the next redraw waits for a picture
         self._error = ""
         self._render_pass = ""
+        self.notices = Notices()
+        self._exported: list[str] = []  # what the export has warned of
+        self._loaded: list[str] | None = None  # what the worker has, when last asked
 
     def close(self) -> None:
         """Ends all work; nothing may be called afterwards."""
@@ -61,7 +74,8 @@ class Viewport:
         """Something in the scene has changed."""
         try:
             self._error = ""
-            self._export(engine, context.space_data, depsgraph)
+            with reporting.collected() as self._exported:
+                self._export(engine, context.space_data, depsgraph)
         except RenderError as error:
             self._error = str(error)
         except Exception as error:
@@ -77,23 +91,23 @@ class Viewport:
         )
         passes = [Pass(source, "RGBA", "COLOR", source)]
         settings = export_settings(scene, depsgraph.view_layer, passes, (0, 0, 1, 1))
-        preview = scene.komorebi
-        settings |= {
-            "samples": preview.preview_samples or (1 << 24),
-            "sample_offset": 0,
-            "time_limit": 0.0,
-            "use_progressive": True,
-            "fast_gi_bounces": preview.ao_bounces,
-            "passes": [source],
-            "pixel_size": _pixel_size(scene),
-        }  # fmt: skip
+        denoising = denoising_of(scene, source, settings["threads"])
+        kept = [source] if denoising is None else [source, *denoising.guides]
+        settings |= preview_settings(scene) | {"passes": kept}
         exposed = source in EXPOSED and settings["method"] == "WORLD_LIGHT"
-        self._exposure = preview.film_exposure if exposed else 1.0
         self._render_pass = space.shading.komorebi.render_pass
         background = background_of(space) if source == "Combined" else None
         if background is not None:
-            settings |= {"film_transparent": True, "passes": ["Combined", "Environment"]}
-        self._worker.show(SceneRequest(data, settings, source, background))
+            settings |= {"film_transparent": True, "passes": [*kept, "Environment"]}
+        self._worker.show(
+            SceneRequest(
+                data, settings, source, background, blur_of(space), denoising,
+                exposure=scene.komorebi.film_exposure if exposed else 1.0,
+                pixel_size=_pixel_size(scene),
+                start_resolution=scene.komorebi.preview_start_resolution,
+            )
+        )  # fmt: skip
+        self._awaits = True
 
     def draw(self, engine: Any, context: Any, depsgraph: Any) -> None:
         """Blender draws the region: shows what there is, and has the rest rendered."""
@@ -107,20 +121,30 @@ class Viewport:
         if context.space_data.shading.komorebi.render_pass != self._render_pass:
             self.update(engine, context, depsgraph)  # Blender tells nobody
         self._worker.pause(context.scene.komorebi.preview_pause)
-        self._worker.look(view)
+        if self._worker.look(view) or self._awaits:
+            self._awaits = False
+            self._worker.await_picture(WAIT_SECONDS)
         picture = self._worker.picture
         error = self.error
         if picture is not None and not error:
-            self._drawing.draw(engine, depsgraph.scene, picture, self._exposure)
+            self._drawing.draw(engine, depsgraph.scene, picture)
+        if self._worker.warnings is not self._loaded:
+            self._loaded = self._worker.warnings
+            self.notices.hold([*self._exported, *self._loaded])
         engine.update_stats("", f"Komorebi: {error}" if error else self._said(picture))
 
     def _said(self, picture: Picture | None) -> str:
         statistics = self._worker.statistics
-        if picture is None:
-            return statistics.stage
+        lines = [statistics.stage if picture is None else self._of(picture)]
+        lines += filter(None, (self._worker.view_denoiser.error, self.notices.text))
+        return "\n".join(lines)
+
+    def _of(self, picture: Picture) -> str:
+        statistics = self._worker.statistics
         said = []
         if picture.sample > 0:
-            said.append(f"Sample {picture.sample}/{picture.samples}")
+            denoised = ", denoised" if picture.is_denoised else ""
+            said.append(f"Sample {picture.sample}/{picture.samples}{denoised}")
         said.append(f"{statistics.triangles / 1e6:.1f} M tris")
         if statistics.seconds > 0.0:
             said.append(f"{statistics.rays / statistics.seconds / 1e6:.0f} Mrays/s")

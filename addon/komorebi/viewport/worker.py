@@ -2,11 +2,14 @@
 
 Nothing in here touches bpy. What comes anew ends what is on: a build by its Cancel, a picture by
 its session's. A picture starts coarse and becomes finer, so that there is always something to see.
+The coarsest is never given up for another, and of two builds in a row only one: else edits that
+come faster than pictures, as in playback, would leave none.
 """
 
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -15,12 +18,15 @@ import numpy as np
 
 from .. import native_scene
 from ..scene_data import FloatArray, SceneData
-from . import keys
-from .view_camera import Rect, ViewCamera, coarse_view
+from . import keys, studio_blur
+from .denoising import DenoisingRequest, ViewDenoiser
+from .refinement import first_pixel, is_quick, next_pixel, quick_settings
+from .texels import texels_of
+from .view_camera import ViewCamera, coarse_view
 
 POLL_SECONDS = 0.01
-# How wide the pixels of the pictures are that come before the final ones.
-COARSE = (8, 4)
+REDRAW_SECONDS = 0.1  # between two pictures that differ by their samples alone
+END_SECONDS = 5.0  # what a session may take to end: some milliseconds as a rule
 
 
 @dataclass(slots=True)
@@ -31,6 +37,11 @@ class SceneRequest:
     settings: dict[str, Any]  # the core's
     source: str  # the core's pass that is shown
     background: float | None = None  # how opaque the world is; None: as the film says
+    blur: float = 0.0  # of a studio light behind the scene, 0 to 1
+    denoising: DenoisingRequest | None = None
+    exposure: float = 1.0
+    pixel_size: int = 1  # how wide the final picture's pixels are on the screen
+    start_resolution: int = 256  # of the first picture's longer side, in its pixels, at most
 
 
 @dataclass(slots=True)
@@ -42,6 +53,10 @@ class Picture:
     pixel: int  # how wide its pixels are on the screen
     sample: int
     samples: int
+    serial: int = 0  # of the request that it answers
+    exposure: float = 1.0
+    texels: FloatArray | None = None  # as it goes onto the screen [height, width, 4]
+    is_denoised: bool = False
 
 
 @dataclass(slots=True)
@@ -54,6 +69,12 @@ class _Wanted:
     paused: bool = False
     stopped: bool = False
     cancel: Any = None  # of the build that is on
+    is_for_view: bool = False  # the build that is on is of no use to another view
+    serial: int = 0  # of the newest scene or view
+    session: Any = None  # that is on
+    gives_way: bool = False  # it ends when something else is wanted
+    owes_picture: bool = False  # a build was given up, and no picture has come since
+    is_awaited: bool = False  # Blender's thread waits for the next picture
 
 
 @dataclass(slots=True)
@@ -76,13 +97,15 @@ class Worker:
         self._wanted = _Wanted()
         self._condition = threading.Condition()
         self._scene: Any = None  # core.Scene
-        self._settings: dict[str, Any] = {}
-        self._source = "Combined"
-        self._background: float | None = None
+        self._built: tuple[SceneData, native_scene.Parts] | None = None  # what it is made of
+        self._request: SceneRequest | None = None  # that it was built for
+        self._serial = 0  # of what is on
         self._is_idle = False
         self.picture: Picture | None = None
         self.error = ""
+        self.warnings: list[str] = []  # of the build
         self.statistics = Statistics()
+        self.view_denoiser = ViewDenoiser(self._show_picture)
         self._thread = threading.Thread(target=self._run, name="komorebi-viewport", daemon=True)
         self._thread.start()
 
@@ -91,16 +114,43 @@ class Worker:
     def show(self, request: SceneRequest) -> None:
         """From now on this scene."""
         with self._condition:
-            self._wanted.scene, self._wanted.changed = request, True
-            self._interrupt()
+            wanted = self._wanted
+            wanted.scene = request
+            if wanted.cancel is not None and not wanted.owes_picture:
+                wanted.cancel.request()
+                wanted.owes_picture = True
+            self._change()
 
-    def look(self, view: ViewCamera) -> None:
-        """From now on by this camera; nothing happens if that is so already."""
+    def look(self, view: ViewCamera) -> bool:
+        """From now on by this camera; False, and nothing happens, if that is so already."""
         with self._condition:
-            if view == self._wanted.view:
-                return
-            self._wanted.view, self._wanted.changed = view, True
-            self._condition.notify_all()
+            wanted = self._wanted
+            if view == wanted.view:
+                return False
+            wanted.view = view
+            if wanted.is_for_view and wanted.cancel is not None:
+                wanted.cancel.request()
+            self._change()
+            return True
+
+    def _change(self) -> None:
+        self._wanted.changed = True
+        self._wanted.serial += 1
+        if self._wanted.gives_way and self._wanted.session is not None:
+            self._wanted.session.cancel()
+        self._condition.notify_all()
+
+    def await_picture(self, seconds: float) -> None:
+        """Back when there is a picture of what is wanted, or will be none, or after `seconds`."""
+        with self._condition:
+            self._wanted.is_awaited = True
+            self._condition.wait_for(self._is_answered, seconds)
+            self._wanted.is_awaited = False
+
+    def _is_answered(self) -> bool:
+        if self._is_idle and not self._wanted.changed:
+            return True
+        return self.picture is not None and self.picture.serial == self._wanted.serial
 
     @property
     def is_idle(self) -> bool:
@@ -116,15 +166,15 @@ class Worker:
     def stop(self) -> None:
         """Ends the thread; back within some milliseconds."""
         with self._condition:
-            self._wanted.stopped = self._wanted.changed = True
-            self._interrupt()
+            wanted = self._wanted
+            wanted.stopped = wanted.changed = True
+            if wanted.cancel is not None:
+                wanted.cancel.request()
+            if wanted.session is not None:
+                wanted.session.cancel()
+            self._condition.notify_all()
         if threading.current_thread() is not self._thread:
             self._thread.join()
-
-    def _interrupt(self) -> None:
-        if self._wanted.cancel is not None:
-            self._wanted.cancel.request()
-        self._condition.notify_all()
 
     # The thread.
 
@@ -133,25 +183,35 @@ class Worker:
             with self._condition:
                 while not self._wanted.changed and not self._wanted.stopped:
                     self._is_idle = True
+                    self._condition.notify_all()
                     self._condition.wait()
                 self._is_idle = False
                 if self._wanted.stopped:
                     break
                 request, view = self._wanted.scene, self._wanted.view
                 self._wanted.scene, self._wanted.changed = None, False
+                self._serial = self._wanted.serial
                 cancel = self._wanted.cancel = self._core.Cancel()
             try:
                 if request is not None:
-                    self._build(request, cancel)
-                if self._scene is not None and view is not None:
-                    self._render(view)
+                    self._build(request, cancel, view)
+                self._end_build()
+                if self._request is not None and view is not None:
+                    self._render(self._request, view)
             except self._core.Cancelled:
                 if request is not None:
                     self._take_back(request)
             except Exception as error:
                 self._fail(error)
-        self._scene = None
+        self._scene = self._built = self._request = None
+        self.view_denoiser.close()
         keys.close(id(self))
+
+    def _end_build(self) -> None:
+        """No build is on any more."""
+        with self._condition:
+            self._wanted.cancel = None
+            self._wanted.is_for_view = False
 
     def _take_back(self, request: SceneRequest) -> None:
         """What was not built comes again, unless there is a newer one."""
@@ -161,60 +221,108 @@ class Worker:
 
     def _fail(self, error: Exception) -> None:
         self.error = str(error)
-        self._scene = None
+        self._scene = self._built = self._request = None
         self._redraw()
 
-    def _build(self, request: SceneRequest, cancel: Any) -> None:
+    def _build(self, request: SceneRequest, cancel: Any, view: ViewCamera | None) -> None:
         self.error, self.statistics = "", Statistics(stage="Building the scene")
         threads = request.settings["threads"]
         shown = {mesh.key.geometry for mesh in request.data.meshes if mesh.key is not None}
+        studio_blur.blur(self._core, request.data.world, request.blur, threads)
         parts = native_scene.load(self._core, request.data, 0.0, threads, cancel)
-        scene = native_scene.build(self._core, request.data, parts, None, threads, cancel)
+        eye = None if view is None else coarse_view(self._core, view, 1).camera
+        scene = native_scene.build(self._core, request.data, parts, None, threads, cancel, eye)
+        self._built, self.warnings = (request.data, parts), native_scene.warnings(parts)
         keys.show(id(self), shown)
-        self._scene, self._settings = scene, request.settings
-        self._source, self._background = request.source, request.background
+        self._scene, self._request = scene, request
+        self.view_denoiser.configure(request.denoising)
         self.statistics = Statistics(scene.triangle_count, scene.byte_count)
 
-    def _is_over(self) -> bool:
-        return self._wanted.changed
-
-    def _render(self, view: ViewCamera) -> None:
-        """Picture after picture until the last sample, or until something else is wanted."""
-        final = self._settings["pixel_size"]
-        for pixel in (*(p * final for p in COARSE), final):
-            if not self._render_at(view, pixel, pixel == final):
-                return
-
-    def _render_at(self, view: ViewCamera, pixel: int, is_final: bool) -> bool:
-        settings = dict(self._settings)
-        del settings["pixel_size"]
-        coarse = coarse_view(self._core, view, pixel)
-        if not is_final:
-            settings |= {
-                "samples": 1, "light_samples": 2, "guides_light": False,
-                "use_adaptive_sampling": False,
-            }  # fmt: skip
-        settings["region"] = coarse.region
-        session = self._core.Session(self._scene, self._core.Settings(**settings), coarse.camera)
+    def _come_near(self, view: ViewCamera, threads: int) -> bool:
+        """Builds the tree over instances anew when the view is so far from where it was built for
+        that floats are coarse there; False when something else is wanted."""
+        eye = coarse_view(self._core, view, 1).camera
+        if self._built is None or not self._scene.is_far_from_origin(eye):
+            return True
+        with self._condition:
+            if self._wanted.changed:
+                return False
+            cancel = self._wanted.cancel = self._core.Cancel()
+            self._wanted.is_for_view = True
+        data, parts = self._built
         try:
-            sample = 0
-            while True:
-                over = session.wait(POLL_SECONDS)
-                if self._is_over():
-                    return False
-                progress = session.progress()
-                if session.error:
-                    raise RuntimeError(session.error)
-                if over or progress["sample"] > sample:
-                    sample = progress["sample"]
-                    if over or sample > 0:
-                        self._publish(view, session, coarse.region, pixel, progress, is_final)
-                if over:
-                    return True
-                if self._wanted.paused:
-                    self._stand_still(session)
+            self._scene = native_scene.build(self._core, data, parts, None, threads, cancel, eye)
+        except self._core.Cancelled:
+            return False
         finally:
+            self._end_build()
+        return True
+
+    def _is_over(self) -> bool:
+        """Whether what is on is to end."""
+        return self._wanted.stopped or (self._wanted.changed and self._wanted.gives_way)
+
+    def _render(self, request: SceneRequest, view: ViewCamera) -> None:
+        """Picture after picture until the last sample, or until something else is wanted."""
+        final, settings = request.pixel_size, request.settings
+        pixel = first_pixel(view.width, view.height, request.start_resolution, final)
+        is_first = True
+        while pixel > final or is_first or not is_quick(settings):
+            start = time.monotonic()
+            quick = quick_settings(settings, pixel > final)
+            if not self._render_at(view, pixel, quick, is_final=False, gives_way=not is_first):
+                return
+            if pixel == final:
+                break
+            pixel, is_first = next_pixel(pixel, time.monotonic() - start, final), False
+        if self._come_near(view, settings["threads"]):
+            self._render_at(view, final, settings, is_final=True, gives_way=True)
+
+    def _render_at(
+        self, view: ViewCamera, pixel: int, settings: dict[str, Any], is_final: bool,
+        gives_way: bool,
+    ) -> bool:  # fmt: skip
+        """Whether it came to its end."""
+        with self._condition:
+            self._wanted.gives_way = gives_way
+            if self._is_over():
+                return False
+        coarse = coarse_view(self._core, view, pixel)
+        self.view_denoiser.begin()
+        session = self._core.Session(
+            self._scene, self._core.Settings(**settings | {"region": coarse.region}), coarse.camera
+        )
+        with self._condition:
+            self._wanted.session = session
+            if self._is_over():  # since then
+                session.cancel()
+        try:
+            return self._follow(session, view, pixel, is_final)
+        finally:
+            with self._condition:
+                self._wanted.session = None
             session.cancel()
+            session.wait(END_SECONDS)  # else whoever frees it would wait with Python's lock
+
+    def _follow(self, session: Any, view: ViewCamera, pixel: int, is_final: bool) -> bool:
+        """Shows what comes of a session until it is over (True) or is to end (False)."""
+        sample, shown = 0, 0.0
+        while True:
+            over = session.wait(POLL_SECONDS)
+            if self._is_over():
+                return False
+            progress = session.progress()
+            if session.error:
+                raise RuntimeError(session.error)
+            now = time.monotonic()
+            is_new = is_final and progress["sample"] > sample
+            if over or (is_new and now - shown >= REDRAW_SECONDS):
+                sample, shown = progress["sample"], now
+                self._publish(view, session, pixel, progress, is_final, over)
+            if over:
+                return self.view_denoiser.is_finished(self._is_over)
+            if self._wanted.paused and self._wanted.gives_way:
+                self._stand_still(session)
 
     def _stand_still(self, session: Any) -> None:
         """Until the pause ends or something else is wanted."""
@@ -225,16 +333,36 @@ class Worker:
         session.resume()
 
     def _publish(
-        self, view: ViewCamera, session: Any, region: Rect, pixel: int, progress: Any,
-        is_final: bool,
-    ) -> None:  # fmt: skip
-        pixels = session.read(self._source)
-        if self._background is not None:
-            pixels[:, :, :3] += np.float32(self._background) * session.read("Environment")
-            pixels[:, :, 3] += np.float32(self._background) * (1.0 - pixels[:, :, 3])
+        self, view: ViewCamera, session: Any, pixel: int, progress: Any, is_final: bool, over: bool
+    ) -> None:
         statistics = self.statistics
         statistics.rays, statistics.seconds = progress["rays"], progress["elapsed"]
-        self.picture = Picture(
-            view, pixels, pixel, progress["sample"] if is_final else 0, self._settings["samples"]
+        sample = progress["sample"] if is_final else 0
+        denoises = is_final and self.view_denoiser.takes(sample, over)
+        if self.view_denoiser.has_shown and not denoises:
+            return
+        request = self._request
+        assert request is not None
+        pixels = session.read(request.source)
+        if request.background is not None:
+            pixels[:, :, :3] += np.float32(request.background) * session.read("Environment")
+            pixels[:, :, 3] += np.float32(request.background) * (1.0 - pixels[:, :, 3])
+        picture = Picture(
+            view, pixels, pixel, sample, request.settings["samples"], self._serial, request.exposure
         )
-        self._redraw()
+        if denoises:
+            self.view_denoiser.offer(
+                picture, [session.read(name) for name in self.view_denoiser.guides]
+            )
+        if not self.view_denoiser.has_shown:
+            self._show_picture(picture)
+
+    def _show_picture(self, picture: Picture) -> None:
+        picture.texels = texels_of(picture.pixels, picture.view, picture.pixel, picture.exposure)
+        with self._condition:
+            self.picture = picture
+            self._wanted.owes_picture = False
+            is_awaited = self._wanted.is_awaited and self._is_answered()
+            self._condition.notify_all()
+        if not is_awaited:  # else it is drawn anyway
+            self._redraw()

@@ -1,0 +1,43 @@
+"""How a picture becomes finer: from pixels that are wide on the screen to the final ones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+# The next picture is the finest one that is expected to come within this time.
+STEP_SECONDS = 0.1
+# Of pictures that are not the last: light rays of each camera ray, while pixels are wide and when
+# they are not. So the first picture at full resolution is there in a third of the time.
+WIDE_LIGHT_SAMPLES, FINE_LIGHT_SAMPLES = 2, 1
+
+
+def first_pixel(width: int, height: int, start_resolution: int, final: int) -> int:
+    """How wide the first picture's pixels are: its longer side has no more than `start_resolution`
+    of them, unless the final picture has fewer."""
+    pixel = final
+    while max(width, height) > start_resolution * pixel:
+        pixel *= 2
+    return pixel
+
+
+def next_pixel(pixel: int, seconds: float, final: int) -> int:
+    """How wide the next picture's pixels are, when those of `pixel` took `seconds`."""
+    finer = pixel // 2
+    while finer > final and 4.0 * seconds * (pixel / finer) ** 2 <= STEP_SECONDS:
+        finer //= 2
+    return max(finer, final)
+
+
+def quick_settings(settings: dict[str, Any], is_wide: bool) -> dict[str, Any]:
+    """The core's settings for a picture that is not the last."""
+    return settings | {
+        "samples": 1,
+        "light_samples": WIDE_LIGHT_SAMPLES if is_wide else FINE_LIGHT_SAMPLES,
+        "guides_light": False,
+        "use_adaptive_sampling": False,
+    }
+
+
+def is_quick(settings: dict[str, Any]) -> bool:
+    """Whether one sample of the last picture costs no more than that of a quick one."""
+    return 0 < settings["light_samples"] <= WIDE_LIGHT_SAMPLES
