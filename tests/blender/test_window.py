@@ -59,8 +59,9 @@ def screen(size="960x540x24", frame_buffer=None):
     return x_screen.screen(size, frame_buffer)
 
 
-def run(text, folder, **environment):
-    """Runs Python text in a Blender with a window, with the add-on on; what it said."""
+def run(text, folder, size="960x540", timeout=120, **environment):
+    """Runs Python text in a Blender with a window of 960 × 540 pixels at the bottom left of a screen
+    of `size`, with the add-on on; what it said."""
     if support.IS_MODULE:
         raise support.Skip("Blender as a Python module has no window")
     path = folder / "watch.py"
@@ -68,11 +69,11 @@ def run(text, folder, **environment):
         f"import sys; sys.path.insert(0, {str(support.HERE)!r})\nimport support; support.enable()\n"
         + text
     )
-    with screen(frame_buffer=folder) as display:
+    with screen(f"{size}x24", folder) as display:
         done = support.process(
             [bpy.app.binary_path, "--factory-startup", "--no-window-focus", "-p", "0", "0", "960",
              "540", "--python-exit-code", "3", "-P", path],
-            timeout=120, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1",
+            timeout=timeout, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1",
             KOMOREBI_SCREEN=str(folder / "Xvfb_screen0"), **environment,
         )  # fmt: skip
     assert "DONE" in done.output, done
