@@ -14,7 +14,7 @@ import numpy as np
 from mathutils import Vector
 
 sys.path.insert(0, str(Path(__file__).parent))
-import window_steps as w  # noqa: E402
+import window_steps as w
 
 NAME, FOLDER = sys.argv[sys.argv.index("--") + 1 :]
 SCENES = Path(__file__).parents[2] / "blend_scenes"

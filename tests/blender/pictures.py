@@ -93,7 +93,9 @@ def write(path, name, screens):
     if path.suffix == ".webp":
         # The band in the middle is what was rendered, without its dashed border; smaller, it has less
         # noise.
-        frames = [Image.fromarray(s[62:418, 4:-4]).resize((560, 316), Image.LANCZOS) for s in screens]
+        frames = [
+            Image.fromarray(s[62:418, 4:-4]).resize((560, 316), Image.LANCZOS) for s in screens
+        ]
         frames[0].save(
             path, save_all=True, append_images=frames[1:], duration=FRAME_MILLISECONDS, loop=0,
             quality=55, method=6,

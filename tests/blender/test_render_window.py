@@ -4,11 +4,9 @@ Keys are pressed through the X server (x_keyboard.py). How long Esc takes is pri
 that work was given up, and not finished, is.
 """
 
-import os
 import re
 from pathlib import Path
 
-import numpy as np
 import support
 import test_window
 
@@ -86,7 +84,9 @@ def test_the_status_line_tells_progress_and_time_left(folder):
     assert watch.fractions == sorted(watch.fractions), watch.fractions
     assert watch.fractions[0] < 0.5 and watch.fractions[-1] == 1.0, watch.fractions
 """)  # fmt: skip
-    lines = re.findall(r"LINE (\S+) .*Sample (\d+)/400 \| Tile \d+/\d+ \| Remaining (\S+)", done.output)
+    lines = re.findall(
+        r"LINE (\S+) .*Sample (\d+)/400 \| Tile \d+/\d+ \| Remaining (\S+)", done.output
+    )
     assert len(lines) >= 3, done
     samples = [int(sample) for _, sample, _ in lines]
     assert samples == sorted(samples)
