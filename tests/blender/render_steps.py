@@ -3,6 +3,7 @@
 Used inside that Blender, beside window_steps.py; test_render_window.py starts it.
 """
 
+import threading
 import time
 
 import bpy
@@ -60,6 +61,7 @@ class Watch:
         self.cpu = 0.0  # seconds of processor time from `seen` to `left`, of the whole process
         self.left = None  # when the engine's last call returned
         self.engine = None
+        self.gates = {}  # threading.Events that stages wait for at their beginning
         self.held = ""  # a stage that waits at its beginning until Esc has come through
         self.keyboard = x_keyboard.Keyboard()
         for name, module, function in STAGES:
@@ -82,8 +84,12 @@ class Watch:
 
     def _staged(self, name, function):
         def staged(*args, **kwargs):
+            if "viewport" in threading.current_thread().name:
+                return function(*args, **kwargs)
             before, self.stage = self.stage, name
             self.entered.append(name)
+            if name in self.gates:
+                assert self.gates.pop(name).wait(100), f"nobody opened the gate of {name}"
             if name == self.held:
                 self.held = ""
                 self.keyboard.press("Escape")
@@ -106,7 +112,7 @@ class Watch:
         self.keyboard.press(*keys)
         yield from until(is_rendering)
 
-    def wait(self, limit=60.0):
+    def wait(self, limit=200.0):
         """Until no render is on."""
         yield from until(lambda: not is_rendering(), limit)
 
@@ -141,7 +147,7 @@ def is_rendering():
     return bpy.app.is_job_running("RENDER")
 
 
-def until(holds, limit=60.0):
+def until(holds, limit=100.0):
     end = time.monotonic() + limit
     while not holds():
         assert time.monotonic() < end, "waited in vain"
