@@ -128,7 +128,8 @@ TEST_F(TexelFiles, TallFilesAreReadInBandsAndMayBeCancelled) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 997) / 997.0f;
   std::vector<float> upward;
   for (int y = kHeight - 1; y >= 0; --y) {
-    upward.insert(upward.end(), &values[4 * kWidth * y], &values[4 * kWidth * y] + 4 * kWidth);
+    const float* const row = values.data() + 4 * kWidth * y;
+    upward.insert(upward.end(), row, row + 4 * kWidth);
   }
   struct Layout {
     const char* name;
