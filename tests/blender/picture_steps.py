@@ -145,13 +145,24 @@ def studio():
 
 def render():
     """The final render on its way, tile by tile."""
-    scene = prepare(samples=32)
+    from komorebi.progress import Progress
+
+    done = 0.0
+    update = Progress.update
+
+    def noted(self, session, final=False):
+        nonlocal done
+        done = session.progress()["fraction"]
+        update(self, session, final)
+
+    Progress.update = noted
+    scene = prepare(samples=16)
     yield 0.3
     scene.komorebi.use_progressive = False
     bpy.context.preferences.view.render_display_type = "AREA"
     with bpy.context.temp_override(window=w.view()["window"]):
         bpy.ops.render.render("INVOKE_DEFAULT")
-    yield 20
+    yield from until(lambda: done > 0.6)
     keep()
 
 
