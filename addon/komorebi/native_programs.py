@@ -26,10 +26,19 @@ class Programs:
         return self.core.Program(data.name, ops, list(data.outputs))
 
 
-def load(core: Any, data: SceneData, threads: int, warnings: list[str]) -> Programs:
-    """With all textures of a scene in memory; `warnings` gets sentences on what is wrong."""
+def load(
+    core: Any, data: SceneData, threads: int, warnings: list[str], cancel: Any = None
+) -> Programs:
+    """With all textures of a scene in memory; `warnings` gets sentences on what is wrong. Raises
+    core.Cancelled."""
     found = native_texture.load(
-        core, images(data), data.texture_limit, threads, warnings.append, _averaged(data)
+        core,
+        images(data),
+        data.texture_limit,
+        threads,
+        warnings.append,
+        _averaged(data),
+        cancel,
     )
     return Programs(core, found)
 

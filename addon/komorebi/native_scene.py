@@ -60,7 +60,7 @@ def load(core: Any, data: SceneData, expected_rays: float, threads: int, cancel:
     for index, mesh in enumerate(data.meshes):
         parts.meshes.append(_mesh(core, mesh, builder, threads, cancel))
         data.meshes[index] = None  # type: ignore[call-overload]
-    parts.programs = native_programs.load(core, data, threads, parts.warnings)
+    parts.programs = native_programs.load(core, data, threads, parts.warnings, cancel)
     parts.lamps = native_lamps.load(data.lamps, parts.programs, parts.warnings)
     parts.world = native_world.load(core, data.world, image_key, parts.programs, threads, cancel)
     return parts

@@ -20,12 +20,14 @@ def load(
     threads: int,
     warn: Callable[[str], None],
     averaged: Container[bytes] = (),
+    cancel: Any = None,
 ) -> dict[bytes, Any]:
     """The core.Texture of each image, by its key: those that the cache knows, or new ones. Those
     whose keys are `averaged` have coarser levels.
 
     Pictures of which all levels together take more than `limit` bytes lose their finest levels,
-    the largest first, and `warn` is told so. A broken file is magenta, and told as well.
+    the largest first, and `warn` is told so. A broken file is magenta, and told as well. Raises
+    core.Cancelled.
     """
     wanted = {image.key: image for image in images}
     pictures = _pictures(wanted.values())
@@ -35,10 +37,12 @@ def load(
     for key, image in pictures.items():
         if key in skips:
             known_as = _known_as(key, skips[key], key in coarser)
-            make = partial(_native, core, image, skips[key], key in coarser, threads)
+            make = partial(_native, core, image, skips[key], key in coarser, threads, cancel)
             try:
                 made[key] = cache.get(known_as, make)
                 continue
+            except core.Cancelled:  # a RuntimeError, too
+                raise
             except RuntimeError as error:
                 warn(f"{error}, rendered in magenta")
         made[key] = core.Texture.missing(image.name)
@@ -107,10 +111,12 @@ def _byte_count(core: Any, image: TextureImage, coarser: bool) -> int:
     return int(core.Texture.packed_bytes(image.name, image.packed, image.matrix, coarser))
 
 
-def _native(core: Any, image: TextureImage, skip: int, coarser: bool, threads: int) -> Any:
+def _native(
+    core: Any, image: TextureImage, skip: int, coarser: bool, threads: int, cancel: Any
+) -> Any:
     how = {
         "color_space": image.color_space, "alpha_mode": image.alpha_mode, "matrix": image.matrix,
-        "skip": skip, "coarser": coarser, "threads": threads,
+        "skip": skip, "coarser": coarser, "threads": threads, "cancel": cancel,
     }  # fmt: skip
     if image.path is not None:
         return core.Texture.from_file(image.path, **how)

@@ -55,7 +55,9 @@ def load(
     if known_as is None:
         return native
     if world.image is not None:
-        native.environment = cache.get(known_as, partial(_native_environment, core, world.image))
+        native.environment = cache.get(
+            known_as, partial(_native_environment, core, world.image, cancel)
+        )
         return native
     assert world.program is not None
     light = programs.program(world.program)
@@ -108,10 +110,10 @@ def _size(world: WorldData) -> int:
     return min(max(AUTOMATIC_SIZE, world.program_size), LARGEST_SIZE)
 
 
-def _native_environment(core: Any, image: EnvironmentImage) -> Any:
+def _native_environment(core: Any, image: EnvironmentImage, cancel: Any) -> Any:
     if image.pixels is not None:
-        return core.Environment.from_pixels(image.name, image.pixels)
-    return core.Environment.from_file(image.path, color_space=image.color_space)
+        return core.Environment.from_pixels(image.name, image.pixels, cancel)
+    return core.Environment.from_file(image.path, color_space=image.color_space, cancel=cancel)
 
 
 def _image_key(core: Any, image: EnvironmentImage, threads: int) -> bytes:

@@ -9,6 +9,7 @@ namespace komorebi {
 namespace {
 
 constexpr std::uint32_t kBlack = kLeastRgbeExponent << 24;
+constexpr std::uint32_t kBandRows = 32;  ///< put in at a time
 
 }  // namespace
 
@@ -20,14 +21,51 @@ LightMap::LightMap(std::string name, std::uint32_t width, std::uint32_t height)
   }
 }
 
-void LightMap::put(std::uint32_t first, std::uint32_t count, float* rgb) {
-  if (words_ == nullptr && floats_ == nullptr) {
-    words_.reset(new std::uint32_t[texel_count()]);
-    std::fill_n(words_.get(), texel_count(), kBlack);
+LightMap make_light_map(std::string name, std::uint32_t width, std::uint32_t height,
+                        std::span<const float> texels, const Cancel& cancel) {
+  LightMap map(std::move(name), width, height);
+  if (texels.size() != 3 * map.texel_count()) {
+    throw std::invalid_argument("environment \"" + map.name() +
+                                "\": " + std::to_string(3 * map.texel_count()) +
+                                " values expected, " + std::to_string(texels.size()) + " given");
   }
+  std::vector<float> band;
+  for (std::uint32_t row = 0; row < height; row += kBandRows) {
+    cancel.check();
+    const std::uint32_t rows = std::min(kBandRows, height - row);
+    const auto part = texels.subspan(std::size_t{3} * width * row, std::size_t{3} * width * rows);
+    band.assign(part.begin(), part.end());
+    map.put(row, rows, band.data());
+  }
+  return map;
+}
+
+void LightMap::put(std::uint32_t first, std::uint32_t count, float* rgb) {
   const std::size_t texels = std::size_t{count} * width_;
   clean(rgb, texels);
+  if (words_ == nullptr && floats_ == nullptr) begin(texels, rgb);
   while (!store(std::uint64_t{first} * width_, texels, rgb)) widen();
+}
+
+// A large map takes no room that its first texels show to be too narrow.
+void LightMap::begin(std::size_t texels, const float* rgb) {
+  std::uint32_t word = 0;
+  bool rgbe = true, half = true;
+  for (std::size_t i = 0; i < texels && rgbe; ++i) rgbe = exact_rgbe(rgb + 3 * i, &word);
+  for (std::size_t i = 0; i < 3 * texels && !rgbe && half; ++i) {
+    half = float_from_half(half_from_float(rgb[i])) == rgb[i];
+  }
+  const std::uint64_t count = texel_count();
+  if (rgbe) {
+    words_.reset(new std::uint32_t[count]);
+    std::fill_n(words_.get(), count, kBlack);
+  } else if (half) {
+    storage_ = LightStorage::kHalf;
+    words_.reset(new std::uint32_t[(3 * count + 1) / 2]());
+  } else {
+    storage_ = LightStorage::kFloat;
+    floats_.reset(new float[3 * count]());
+  }
 }
 
 void LightMap::clean(float* p, std::size_t texels) {

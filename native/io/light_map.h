@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/light_texels.h"
 #include "io/image.h"
+#include "parallel/cancel.h"
 
 namespace komorebi {
 
@@ -37,6 +39,7 @@ class LightMap {
   std::size_t byte_count() const;
 
  private:
+  void begin(std::size_t texels, const float* rgb);
   void clean(float* rgb, std::size_t texels);
   bool store(std::uint64_t first, std::size_t texels, const float* rgb);
   void widen();
@@ -51,6 +54,12 @@ class LightMap {
 };
 
 /// Reads a map band by band, so that no more than its texels is ever in memory; as read_image.
-LightMap read_light_map(const std::string& path, ColorSpace color_space);
+/// Throws Cancelled, too.
+LightMap read_light_map(const std::string& path, ColorSpace color_space,
+                        const Cancel& cancel = Cancel::never());
+
+/// The map of `texels` [height][width][3], as LightMap::put takes them. Throws Cancelled.
+LightMap make_light_map(std::string name, std::uint32_t width, std::uint32_t height,
+                        std::span<const float> texels, const Cancel& cancel = Cancel::never());
 
 }  // namespace komorebi

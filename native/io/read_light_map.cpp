@@ -35,7 +35,7 @@ class SrgbDecoder {
 
 }  // namespace
 
-LightMap read_light_map(const std::string& path, ColorSpace color_space) {
+LightMap read_light_map(const std::string& path, ColorSpace color_space, const Cancel& cancel) {
   const auto input = open_image(path);
   const OIIO::ImageSpec spec = input->spec();
   check_image_size(path, spec);
@@ -49,6 +49,7 @@ LightMap read_light_map(const std::string& path, ColorSpace color_space) {
   std::vector<float> read(width * static_cast<std::size_t>(band * channels));
   std::vector<float> rgb(width * static_cast<std::size_t>(band * 3));
   for (int top = 0; top < spec.height; top += band) {
+    cancel.check();
     const int rows = std::min(band, spec.height - top);
     const int y = spec.y + top;
     const bool fine =

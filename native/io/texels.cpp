@@ -2,6 +2,7 @@
 
 #include <OpenImageIO/filesystem.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string_view>
 
@@ -10,6 +11,8 @@
 
 namespace komorebi {
 namespace {
+
+constexpr int kRows = 64;  ///< of a band, if the file has no tiles or strips
 
 /// The widest type that a file's channels have; what is neither a byte, a short nor a float is read
 /// as bytes.
@@ -93,7 +96,29 @@ void widen(T* texels, std::size_t count, std::size_t channels, bool associate, b
   }
 }
 
-Texels read(OIIO::ImageInput& input, const std::string& name, AlphaUse alpha) {
+/// Reads all scanlines or tiles band by band, as the library's read_image does, but in bands of
+/// which each takes little time. `row` is negative, from the top one on.
+bool read_bands(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+                std::byte* top, OIIO::stride_t row, const Cancel& cancel) {
+  const int strip = std::clamp(spec.get_int_attribute("tiff:RowsPerStrip", 1), 1, spec.height);
+  const int band = spec.tile_height > 1 ? spec.tile_height : (kRows + strip - 1) / strip * strip;
+  for (int done = 0; done < spec.height; done += band) {
+    cancel.check();
+    const int y = spec.y + done, end = y + std::min(band, spec.height - done);
+    std::byte* const to = top + row * done;
+    const bool fine =
+        spec.tile_width > 0
+            ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, y, end, spec.z, spec.z + 1, 0,
+                               spec.nchannels, type, to, OIIO::AutoStride, row)
+            : input.read_scanlines(0, 0, y, end, spec.z, 0, spec.nchannels, type, to,
+                                   OIIO::AutoStride, row);
+    if (!fine) return false;
+  }
+  return true;
+}
+
+Texels read(OIIO::ImageInput& input, const std::string& name, AlphaUse alpha,
+            const Cancel& cancel) {
   const OIIO::ImageSpec spec = input.spec();
   Texels texels = shape_of(name, spec);
   if (alpha.halves && texels.type != TexelType::kFloat) texels.type = TexelType::kHalf;
@@ -105,8 +130,8 @@ Texels read(OIIO::ImageInput& input, const std::string& name, AlphaUse alpha) {
   texels.data.reset(new std::byte[room]);
   std::byte* const pixels = texels.data.get() + (room - count * size * channels);
   const auto row = static_cast<OIIO::stride_t>(size * channels * texels.width);
-  const bool fine = input.read_image(0, 0, 0, spec.nchannels, oiio_type(texels.type),
-                                     pixels + row * (spec.height - 1), OIIO::AutoStride, -row);
+  const bool fine = read_bands(input, spec, oiio_type(texels.type),
+                               pixels + row * (spec.height - 1), -row, cancel);
   if (!fine || input.has_error())
     fail_image(name, "cannot be read" + in_brackets(input.geterror()));
   if (channels == 1) return texels;
@@ -152,15 +177,16 @@ std::unique_ptr<OIIO::ImageInput> open_memory(OIIO::Filesystem::IOMemReader& mem
 
 }  // namespace
 
-Texels read_texels(const std::string& path, AlphaUse alpha) {
+Texels read_texels(const std::string& path, AlphaUse alpha, const Cancel& cancel) {
   const OIIO::ImageSpec config = straight_please();
   const auto input = open_image(path, &config);
-  return read(*input, path, alpha);
+  return read(*input, path, alpha, cancel);
 }
 
-Texels read_texels(std::span<const std::byte> file, const std::string& name, AlphaUse alpha) {
+Texels read_texels(std::span<const std::byte> file, const std::string& name, AlphaUse alpha,
+                   const Cancel& cancel) {
   OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(file.data()), file.size());
-  return read(*open_memory(memory, name), name, alpha);
+  return read(*open_memory(memory, name), name, alpha, cancel);
 }
 
 Texels read_texel_header(const std::string& path) {

@@ -6,6 +6,8 @@
 #include <span>
 #include <string>
 
+#include "parallel/cancel.h"
+
 namespace komorebi {
 
 /// How a texel's numbers are stored; bytes and shorts stand for 0 to 1.
@@ -39,12 +41,13 @@ struct AlphaUse {
 /// Reads the first picture of a file in the type of number that it has, as Cycles does: one channel
 /// stays grey, two are grey and alpha, of more than four the first four are taken.
 /// std::runtime_error with one sentence that names the file when it is missing, not a readable
-/// image, broken or absurdly large.
-Texels read_texels(const std::string& path, AlphaUse alpha);
+/// image, broken or absurdly large; Cancelled.
+Texels read_texels(const std::string& path, AlphaUse alpha, const Cancel& cancel = Cancel::never());
 
 /// The same of a file in memory; `name` (for messages) may end like a file's name, which tells its
 /// format.
-Texels read_texels(std::span<const std::byte> file, const std::string& name, AlphaUse alpha);
+Texels read_texels(std::span<const std::byte> file, const std::string& name, AlphaUse alpha,
+                   const Cancel& cancel = Cancel::never());
 
 /// What reading a file would give, without its data.
 Texels read_texel_header(const std::string& path);

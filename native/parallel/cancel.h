@@ -10,6 +10,10 @@ class Cancel {
  public:
   void raise() { flag_.store(true, std::memory_order_relaxed); }
   bool raised() const { return flag_.load(std::memory_order_relaxed); }
+  /// Throws Cancelled when it has been raised.
+  void check() const;
+  /// One that nobody raises.
+  static const Cancel& never();
 
   Cancel() = default;
   Cancel(const Cancel&) = delete;
@@ -23,5 +27,14 @@ class Cancel {
 struct Cancelled : std::runtime_error {
   Cancelled() : std::runtime_error("cancelled") {}
 };
+
+inline void Cancel::check() const {
+  if (raised()) throw Cancelled();
+}
+
+inline const Cancel& Cancel::never() {
+  static const Cancel kNever;
+  return kNever;
+}
 
 }  // namespace komorebi

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "parallel/cancel.h"
 #include "parallel/thread_pool.h"
@@ -43,5 +44,18 @@ std::shared_ptr<ThreadPool> build_pool(unsigned threads);
 
 /// None gives a flag that nobody raises.
 const Cancel& cancel_or_never(const std::shared_ptr<Cancel>& cancel);
+
+/// What _image's function `reader` gives for these arguments: a capsule with a `T`, which stays
+/// its own. Throws Cancelled.
+template <class T, class... Arguments>
+std::pair<py::capsule, T*> read_image_file(const char* reader, const Cancel& cancel,
+                                           const Arguments&... arguments) {
+  const py::object read =
+      py::module_::import("komorebi_core._image").attr(reader)(arguments..., py::capsule(&cancel));
+  if (read.is_none()) throw Cancelled();
+  auto owner = read.cast<py::capsule>();
+  T* const content = owner.get_pointer<T>();
+  return {std::move(owner), content};
+}
 
 }  // namespace komorebi::python

@@ -15,31 +15,36 @@ namespace komorebi::python {
 namespace {
 
 std::shared_ptr<Environment> environment_from_file(const std::string& path,
-                                                   const std::string& color_space) {
-  const py::capsule owner =
-      py::module_::import("komorebi_core._image").attr("read")(path, color_space);
-  auto& map = *owner.get_pointer<LightMap>();
+                                                   const std::string& color_space,
+                                                   const std::shared_ptr<Cancel>& cancel) {
+  const Cancel& stop = cancel_or_never(cancel);
+  const auto [owner, map] = read_image_file<LightMap>("read", stop, path, color_space);
   const py::gil_scoped_release release;
-  return std::make_shared<Environment>(std::move(map), *build_pool(0));
+  return std::make_shared<Environment>(std::move(*map), *build_pool(0), stop);
 }
 
 std::shared_ptr<Environment> environment_from_pixels(const std::string& name,
-                                                     const py::array& pixels) {
+                                                     const py::array& pixels,
+                                                     const std::shared_ptr<Cancel>& cancel) {
   const auto values = view<float>(pixels, "image \"" + name + "\": pixels", {-1, -1, 3});
   const auto height = static_cast<std::uint32_t>(pixels.shape(0));
   const auto width = static_cast<std::uint32_t>(pixels.shape(1));
   const py::gil_scoped_release release;
-  return std::make_shared<Environment>(name, width, height,
-                                       std::vector<float>(values.begin(), values.end()));
+  const Cancel& stop = cancel_or_never(cancel);
+  return std::make_shared<Environment>(make_light_map(name, width, height, values, stop),
+                                       *build_pool(0), stop);
 }
 
 std::shared_ptr<Environment> environment_from_program(const Program& program, std::uint32_t width,
                                                       std::uint32_t height, unsigned threads,
                                                       const std::shared_ptr<Cancel>& cancel) {
   const py::gil_scoped_release release;
+  const Cancel& stop = cancel_or_never(cancel);
+  const auto pool = build_pool(threads);
   return std::make_shared<Environment>(
-      program.name(), width, height,
-      world_texels(program, width, height, *build_pool(threads), cancel_or_never(cancel)));
+      make_light_map(program.name(), width, height,
+                     world_texels(program, width, height, *pool, stop), stop),
+      *pool, stop);
 }
 
 }  // namespace
@@ -48,10 +53,12 @@ void bind_environment(py::module_& module) {
   py::class_<Environment, std::shared_ptr<Environment>>(
       module, "Environment", "An equirectangular map with its sampling tables; immutable.")
       .def_static("from_file", &environment_from_file, py::arg("path"),
-                  py::arg("color_space") = "LINEAR",
-                  "Reads any image that OpenImageIO can; RuntimeError naming the file.")
+                  py::arg("color_space") = "LINEAR", py::arg("cancel") = std::shared_ptr<Cancel>(),
+                  "Reads any image that OpenImageIO can; RuntimeError naming the file. Raises "
+                  "Cancelled.")
       .def_static("from_pixels", &environment_from_pixels, py::arg("name"), py::arg("pixels"),
-                  "float32 [H, W, 3], linear Rec. 709, row 0 at the bottom.")
+                  py::arg("cancel") = std::shared_ptr<Cancel>(),
+                  "float32 [H, W, 3], linear Rec. 709, row 0 at the bottom. Raises Cancelled.")
       .def_static("from_program", &environment_from_program, py::arg("program"), py::arg("width"),
                   py::arg("height"), py::arg("threads") = 0,
                   py::arg("cancel") = std::shared_ptr<Cancel>(),

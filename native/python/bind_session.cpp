@@ -207,15 +207,20 @@ void bind_session(py::module_& module) {
   bind_settings(module);
   py::class_<Session, std::shared_ptr<Session>>(
       module, "Session", "Renders a committed scene on threads of its own; it starts at once.")
-      .def(py::init([](std::shared_ptr<Scene> scene, const Settings& settings,
-                       const std::shared_ptr<CameraDesc>& camera) {
-             const py::gil_scoped_release release;
-             return new Session(std::move(scene), settings,
-                                camera ? std::optional(*camera) : std::nullopt);
-           }),
-           py::arg("scene"), py::arg("settings"), py::arg("camera") = py::none(),
-           "camera: a Camera in place of the scene's own. ValueError: the scene is not committed "
-           "or has no camera, a setting is out of range.")
+      .def(
+          py::init([](std::shared_ptr<Scene> scene, const Settings& settings,
+                      const std::shared_ptr<CameraDesc>& camera,
+                      const std::shared_ptr<Cancel>& cancel) {
+            const py::gil_scoped_release release;
+            return new Session(std::move(scene), settings,
+                               camera ? std::optional(*camera) : std::nullopt,
+                               cancel_or_never(cancel));
+          }),
+          py::arg("scene"), py::arg("settings"), py::arg("camera") = py::none(),
+          py::arg("cancel") = std::shared_ptr<Cancel>(),
+          "camera: a Camera in place of the scene's own. cancel: ends what comes before the start. "
+          "ValueError: the scene is not committed or has no camera, a setting is out of range. "
+          "Raises Cancelled.")
       .def("wait", &Session::wait, py::arg("timeout"), py::call_guard<py::gil_scoped_release>(),
            "True when the render is over (done, cancelled or failed) within `timeout` seconds.")
       .def("cancel", &Session::cancel, "Ends the render within 100 ms; what is done stays.")

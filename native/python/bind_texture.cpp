@@ -42,22 +42,24 @@ PictureUse picture_use(const std::string& color_space, const std::string& alpha_
 }
 
 std::shared_ptr<Texture> make_texture(const std::string& name, Texels texels, const PictureUse& use,
-                                      const TextureLevels& kept, unsigned threads) {
-  return std::make_shared<Texture>(name, std::move(texels), use.color, *build_pool(threads), kept);
+                                      const TextureLevels& kept, unsigned threads,
+                                      const Cancel& cancel) {
+  return std::make_shared<Texture>(name, std::move(texels), use.color, *build_pool(threads), kept,
+                                   cancel);
 }
 
-/// What _image's function `reader` gives; the name is for messages.
+/// What _image's function `reader` reads; the name is for messages.
 std::shared_ptr<Texture> from_reader(const char* reader, const py::object& file,
                                      const std::string& name, const std::string& color_space,
                                      const std::string& alpha_mode, const py::object& matrix,
-                                     const TextureLevels& kept, unsigned threads) {
+                                     const TextureLevels& kept, unsigned threads,
+                                     const std::shared_ptr<Cancel>& cancel) {
   const PictureUse use = picture_use(color_space, alpha_mode, matrix);
-  const py::capsule owner =
-      py::module_::import("komorebi_core._image")
-          .attr(reader)(file, name, use.alpha.associate, use.alpha.leave_out, use.alpha.halves);
-  auto& texels = *owner.get_pointer<Texels>();
+  const Cancel& stop = cancel_or_never(cancel);
+  const auto [owner, texels] = read_image_file<Texels>(
+      reader, stop, file, name, use.alpha.associate, use.alpha.leave_out, use.alpha.halves);
   const py::gil_scoped_release release;
-  return make_texture(name, std::move(texels), use, kept, threads);
+  return make_texture(name, std::move(*texels), use, kept, threads, stop);
 }
 
 template <class T>
@@ -111,7 +113,7 @@ void use_alpha(Texels& texels, AlphaUse alpha) {
 std::shared_ptr<Texture> from_pixels(const std::string& name, const py::array& pixels,
                                      const std::string& color_space, const std::string& alpha_mode,
                                      const py::object& matrix, std::uint32_t skip, bool coarser,
-                                     unsigned threads) {
+                                     unsigned threads, const std::shared_ptr<Cancel>& cancel) {
   const TextureLevels kept = {skip, coarser};
   const PictureUse use = picture_use(color_space, alpha_mode, matrix);
   const std::string what = "image \"" + name + "\": pixels";
@@ -120,7 +122,7 @@ std::shared_ptr<Texture> from_pixels(const std::string& name, const py::array& p
                         : texels_from<float>(pixels, what, TexelType::kFloat);
   const py::gil_scoped_release release;
   use_alpha(texels, use.alpha);
-  return make_texture(name, std::move(texels), use, kept, threads);
+  return make_texture(name, std::move(texels), use, kept, threads, cancel_or_never(cancel));
 }
 
 std::shared_ptr<Texture> from_tiles(
@@ -187,7 +189,8 @@ void bind_texture(py::module_& module) {
   const auto use = [](auto&& define) {
     return define(py::kw_only(), py::arg("color_space") = "LINEAR",
                   py::arg("alpha_mode") = "STRAIGHT", py::arg("matrix") = py::none(),
-                  py::arg("skip") = 0, py::arg("coarser") = true, py::arg("threads") = 0);
+                  py::arg("skip") = 0, py::arg("coarser") = true, py::arg("threads") = 0,
+                  py::arg("cancel") = std::shared_ptr<Cancel>());
   };
   py::class_<Texture, std::shared_ptr<Texture>> texture(
       module, "Texture",
@@ -196,14 +199,15 @@ void bind_texture(py::module_& module) {
 color_space: LINEAR, SRGB or NON_COLOR. alpha_mode: STRAIGHT, PREMUL, CHANNEL_PACKED or NONE, as
 Blender has it. matrix: linear Rec. 709 from the picture's own primaries, float64 [3, 3], applied
 after the curve. skip: how many of the finest levels are left out. coarser: whether levels
-beyond the finest are made, which a footprint asks for.)");
+beyond the finest are made, which a footprint asks for. cancel: ends it by Cancelled.)");
   use([&](const auto&... arguments) {
     texture.def_static(
         "from_file",
         [](const std::string& path, const std::string& color_space, const std::string& alpha_mode,
-           const py::object& matrix, std::uint32_t skip, bool coarser, unsigned threads) {
+           const py::object& matrix, std::uint32_t skip, bool coarser, unsigned threads,
+           const std::shared_ptr<Cancel>& cancel) {
           return from_reader("read_texels", py::str(path), path, color_space, alpha_mode, matrix,
-                             {skip, coarser}, threads);
+                             {skip, coarser}, threads, cancel);
         },
         py::arg("path"), arguments...,
         "Reads any image that OpenImageIO can, in its own type of number; RuntimeError naming the "
@@ -212,9 +216,9 @@ beyond the finest are made, which a footprint asks for.)");
         "from_bytes",
         [](const std::string& name, const py::bytes& file, const std::string& color_space,
            const std::string& alpha_mode, const py::object& matrix, std::uint32_t skip,
-           bool coarser, unsigned threads) {
+           bool coarser, unsigned threads, const std::shared_ptr<Cancel>& cancel) {
           return from_reader("read_packed_texels", file, name, color_space, alpha_mode, matrix,
-                             {skip, coarser}, threads);
+                             {skip, coarser}, threads, cancel);
         },
         py::arg("name"), py::arg("file"), arguments...,
         "A file in memory; the end of its name may tell its format. RuntimeError naming it.");

@@ -14,18 +14,29 @@ namespace {
 
 namespace py = pybind11;
 
+/// The flag of a caller in the other module. Cancelled is an exception of each module's own, so
+/// None is what says that a call was.
+const Cancel& flag(const py::capsule& cancel) {
+  return *cancel.get_pointer<Cancel>();
+}
+
 /// The map that the caller's capsule owns, for environment_from_file to take.
-py::capsule read(const std::string& path, const std::string& color_space) {
+py::object read(const std::string& path, const std::string& color_space,
+                const py::capsule& cancel) {
   if (color_space != "LINEAR" && color_space != "SRGB") {
     throw std::invalid_argument("color_space must be LINEAR or SRGB, not " + color_space);
   }
   std::unique_ptr<LightMap> map;
-  {
+  const Cancel& stop = flag(cancel);
+  try {
     const py::gil_scoped_release release;
-    map = std::make_unique<LightMap>(
-        read_light_map(path, color_space == "SRGB" ? ColorSpace::kSrgb : ColorSpace::kLinear));
+    map = std::make_unique<LightMap>(read_light_map(
+        path, color_space == "SRGB" ? ColorSpace::kSrgb : ColorSpace::kLinear, stop));
+  } catch (const Cancelled&) {
+    return py::none();
   }
-  return {map.release(), "komorebi.LightMap", [](void* it) { delete static_cast<LightMap*>(it); }};
+  return py::capsule(map.release(), "komorebi.LightMap",
+                     [](void* it) { delete static_cast<LightMap*>(it); });
 }
 
 py::capsule texels_capsule(Texels texels) {
@@ -34,24 +45,30 @@ py::capsule texels_capsule(Texels texels) {
 }
 
 /// Texels that the caller's capsule owns, for Texture.from_file to take.
-py::capsule read_file(const std::string& path, const std::string&, bool associate, bool leave_out,
-                      bool halves) {
+py::object read_file(const std::string& path, const std::string&, bool associate, bool leave_out,
+                     bool halves, const py::capsule& cancel) {
+  const Cancel& stop = flag(cancel);
   Texels texels;
-  {
+  try {
     const py::gil_scoped_release release;
-    texels = read_texels(path, {associate, leave_out, halves});
+    texels = read_texels(path, {associate, leave_out, halves}, stop);
+  } catch (const Cancelled&) {
+    return py::none();
   }
   return texels_capsule(std::move(texels));
 }
 
-py::capsule read_packed(const py::bytes& file, const std::string& name, bool associate,
-                        bool leave_out, bool halves) {
+py::object read_packed(const py::bytes& file, const std::string& name, bool associate,
+                       bool leave_out, bool halves, const py::capsule& cancel) {
   const std::string_view data = file;
+  const Cancel& stop = flag(cancel);
   Texels texels;
-  {
+  try {
     const py::gil_scoped_release release;
     texels = read_texels(std::as_bytes(std::span(data.data(), data.size())), name,
-                         {associate, leave_out, halves});
+                         {associate, leave_out, halves}, stop);
+  } catch (const Cancelled&) {
+    return py::none();
   }
   return texels_capsule(std::move(texels));
 }
@@ -60,7 +77,7 @@ py::capsule read_packed(const py::bytes& file, const std::string& name, bool ass
 
 PYBIND11_MODULE(_image, module) {
   module.doc() = "Reads image files for komorebi_core.Environment and Texture.";
-  module.def("read", &read, py::arg("path"), py::arg("color_space"));
+  module.def("read", &read, py::arg("path"), py::arg("color_space"), py::arg("cancel"));
   module.def("read_texels", &read_file);
   module.def("read_packed_texels", &read_packed);
   module.def("read_texel_header",

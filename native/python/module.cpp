@@ -51,8 +51,7 @@ std::shared_ptr<ThreadPool> build_pool(unsigned threads) {
 }
 
 const Cancel& cancel_or_never(const std::shared_ptr<Cancel>& cancel) {
-  static const Cancel never;
-  return cancel ? *cancel : never;
+  return cancel ? *cancel : Cancel::never();
 }
 
 PYBIND11_MODULE(_komorebi, module) {

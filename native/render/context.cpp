@@ -64,7 +64,8 @@ float max_radiance(const Scene& scene, const Settings& settings) {
   return scene.max_radiance() + (lamps ? scene.max_lamp_radiance() : 0.0f);
 }
 
-RenderContext make_context(const Scene& scene, const Settings& settings, const FilterView& filter) {
+RenderContext make_context(const Scene& scene, const Settings& settings, const FilterView& filter,
+                           const Cancel& cancel) {
   const bool ao = settings.method == Method::kAmbientOcclusion;
   RenderContext context;
   context.scene = scene.view();
@@ -90,12 +91,12 @@ RenderContext make_context(const Scene& scene, const Settings& settings, const F
   context.cosine_share = cosine_share(settings.environment_sampling, scene.world_is_uniform());
   const auto& map = scene.world_environment();
   if (!ao && map) {
-    context.sky_flux = static_cast<float>(scene.world_strength() * map->mean_flux());
+    context.sky_flux = static_cast<float>(scene.world_strength() * map->mean_flux(cancel));
     if (scene.splits_light_rays()) context.surface_mask = kMaskDiffuse;
   }
   if (!ao && map && !map->black() &&
       settings.environment_sampling == EnvironmentSampling::kProduct) {
-    context.product = map->product_table().view();
+    context.product = map->product_table(cancel).view();
   }
   context.shares_light = !scene.splits_light_rays() && !is_dark(context);
   context.transparent = settings.film_transparent;

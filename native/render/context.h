@@ -90,6 +90,7 @@ inline bool has_more_light(const RenderContext& context) {
 float max_radiance(const Scene& scene, const Settings& settings);
 
 /// The settings are checked and the scene is committed and outlives the context.
-RenderContext make_context(const Scene& scene, const Settings& settings, const FilterView& filter);
+RenderContext make_context(const Scene& scene, const Settings& settings, const FilterView& filter,
+                           const Cancel& cancel = Cancel::never());
 
 }  // namespace komorebi

@@ -9,18 +9,6 @@
 namespace komorebi {
 namespace {
 
-LightMap map_of(std::string name, std::uint32_t width, std::uint32_t height,
-                std::vector<float> texels) {
-  LightMap map(std::move(name), width, height);
-  const std::uint64_t count = map.texel_count();
-  if (texels.size() != 3 * count) {
-    throw std::invalid_argument("environment \"" + map.name() + "\": " + std::to_string(3 * count) +
-                                " values expected, " + std::to_string(texels.size()) + " given");
-  }
-  map.put(0, height, texels.data());
-  return map;
-}
-
 /// The luminance of a row of texels.
 void row_luminance(const EnvironmentView& e, std::uint32_t row, float* out) {
   for (std::uint32_t c = 0; c < e.width; ++c) {
@@ -30,15 +18,16 @@ void row_luminance(const EnvironmentView& e, std::uint32_t row, float* out) {
 
 }  // namespace
 
-Environment::Environment(LightMap map, ThreadPool& pool) : map_(std::move(map)) {
-  build_tables(pool);
+Environment::Environment(LightMap map, ThreadPool& pool, const Cancel& cancel)
+    : map_(std::move(map)) {
+  build_tables(pool, cancel);
 }
 
 Environment::Environment(std::string name, std::uint32_t width, std::uint32_t height,
-                         std::vector<float> texels)
-    : map_(map_of(std::move(name), width, height, std::move(texels))) {
+                         const std::vector<float>& texels)
+    : map_(make_light_map(std::move(name), width, height, texels)) {
   ThreadPool pool(1);
-  build_tables(pool);
+  build_tables(pool, Cancel::never());
 }
 
 EnvironmentView Environment::texel_view() const {
@@ -51,7 +40,7 @@ EnvironmentView Environment::texel_view() const {
   return e;
 }
 
-void Environment::build_tables(ThreadPool& pool) {
+void Environment::build_tables(ThreadPool& pool, const Cancel& cancel) {
   const std::uint32_t rows = height() + 1, columns = width();
   row_z_.resize(rows + 1);
   row_z_[0] = -1.0;
@@ -66,6 +55,7 @@ void Environment::build_tables(ThreadPool& pool) {
   row_cdf_.resize(rows + 1);
   std::vector<double> row_weight(rows);
   pool.for_each_chunk(rows, 16, [&](std::size_t first, std::size_t last) {
+    if (cancel.raised()) return;
     std::vector<double> weight(columns);
     std::vector<float> low(columns), high(columns);
     row_luminance(e, first == 0 ? height() - 1 : static_cast<std::uint32_t>(first - 1),
@@ -84,6 +74,7 @@ void Environment::build_tables(ThreadPool& pool) {
           quantize_cdf(weight, &column_cdf_[r * (columns + 1)]) * (row_z_[r + 1] - row_z_[r]);
     }
   });
+  cancel.check();
   if (!(quantize_cdf(row_weight, row_cdf_.data()) > 0.0)) {
     row_cdf_.clear();
     column_cdf_ = {};
@@ -115,19 +106,21 @@ EnvironmentView Environment::view(double strength, const Mat3d& texture_from_wor
   return view;
 }
 
-const ProductTable& Environment::product_table() const {
+const ProductTable& Environment::product_table(const Cancel& cancel) const {
   std::call_once(product_once_,
-                 [this] { product_table_ = std::make_unique<const ProductTable>(view()); });
+                 [&] { product_table_ = std::make_unique<const ProductTable>(view(), cancel); });
   return *product_table_;
 }
 
-double Environment::mean_flux() const {
-  std::call_once(flux_once_, [this] {
+double Environment::mean_flux(const Cancel& cancel) const {
+  std::call_once(flux_once_, [&] {
     const auto z_at = [&](std::uint32_t row) {  // the lower edge of a row of texels
       return sin_cos_turns(0.5 * row / height() - 0.25).sin;
     };
     std::uint64_t texel = 0;
+    mean_flux_ = 0.0;
     for (std::uint32_t r = 0; r < height(); ++r) {
+      cancel.check();
       double sum = 0.0;
       for (std::uint32_t i = 0; i < width(); ++i) {
         const Vec3 value = map_.texel(texel++);

@@ -17,24 +17,25 @@ namespace komorebi {
 /// belong to the texels alone: strength and rotation are set per view.
 class Environment {
  public:
-  /// The tables are worked out on the pool, equal for any number of threads.
-  Environment(LightMap map, ThreadPool& pool);
+  /// The tables are worked out on the pool, equal for any number of threads. Throws Cancelled.
+  Environment(LightMap map, ThreadPool& pool, const Cancel& cancel = Cancel::never());
   /// `texels` is [height][width][3], linear Rec. 709 radiance, row 0 at the bottom, as
   /// LightMap::put takes them. std::invalid_argument, naming `name`, when sizes do not fit.
   Environment(std::string name, std::uint32_t width, std::uint32_t height,
-              std::vector<float> texels);
+              const std::vector<float>& texels);
 
   /// Valid while the environment lives. `texture_from_world` must be a rotation (or a reflection):
   /// std::invalid_argument otherwise, or when `strength` is negative or not finite.
   EnvironmentView view(double strength = 1.0, const Mat3d& texture_from_world = Mat3d(1.0)) const;
 
   /// The tables of product importance sampling, made at the first call. Not for a black map. Safe
-  /// from any thread.
-  const ProductTable& product_table() const;
+  /// from any thread. Throws Cancelled; the next call then makes them.
+  const ProductTable& product_table(const Cancel& cancel = Cancel::never()) const;
 
   /// ∫ (red + green + blue) / 3 over all directions, by solid angle, at strength 1: what Cycles
-  /// normalises its importance map by. Worked out at the first call. Safe from any thread.
-  double mean_flux() const;
+  /// normalises its importance map by. Worked out at the first call. Safe from any thread. Throws
+  /// Cancelled.
+  double mean_flux(const Cancel& cancel = Cancel::never()) const;
 
   const std::string& name() const { return map_.name(); }
   std::uint32_t width() const { return map_.width(); }
@@ -48,7 +49,7 @@ class Environment {
 
  private:
   EnvironmentView texel_view() const;
-  void build_tables(ThreadPool& pool);
+  void build_tables(ThreadPool& pool, const Cancel& cancel);
 
   LightMap map_;
   std::vector<std::uint32_t> row_cdf_;

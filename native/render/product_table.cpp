@@ -69,13 +69,13 @@ Vec3d in_bin(std::uint32_t bin, std::uint32_t bins, double x, double y) {
 
 }  // namespace
 
-ProductTable::ProductTable(const EnvironmentView& map)
+ProductTable::ProductTable(const EnvironmentView& map, const Cancel& cancel)
     : bins_(kBins),
       rows_(std::min(kRows, map.height + 1)),
       columns_(std::min(kColumns, map.width)) {
   patch_row_ = even_cuts(map.height + 1, rows_);
   patch_column_ = even_cuts(map.width, columns_);
-  sum_cells(map);
+  sum_cells(map, cancel);
   ThreadPool pool(0);  // once a map
   fill(nullptr, pool);
 }
@@ -113,7 +113,7 @@ void ProductTable::fill(const SkyVisibility* visibility, ThreadPool& pool) {
   });
 }
 
-void ProductTable::sum_cells(const EnvironmentView& map) {
+void ProductTable::sum_cells(const EnvironmentView& map, const Cancel& cancel) {
   Cells& cells = cells_;
   const std::size_t strip = map.height + 1 + rows_;
   patch_row_cdf_.resize(columns_ * strip);
@@ -124,6 +124,7 @@ void ProductTable::sum_cells(const EnvironmentView& map) {
   }
   for (std::uint32_t r = 0; r < rows_; ++r) {
     for (std::uint32_t c = 0; c < columns_; ++c) {
+      cancel.check();
       Vec3d sum(0.0);
       row_energy.clear();
       for (std::uint32_t y = patch_row_[r]; y < patch_row_[r + 1]; ++y) {

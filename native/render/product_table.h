@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/environment_product.h"
+#include "parallel/cancel.h"
 #include "parallel/thread_pool.h"
 
 namespace komorebi {
@@ -16,7 +17,8 @@ class SkyVisibility;
 class ProductTable {
  public:
   /// `map` must shine somewhere. Of a large map: 32² bins of normals, 32 × 64 cells.
-  explicit ProductTable(const EnvironmentView& map);
+  /// Throws Cancelled.
+  explicit ProductTable(const EnvironmentView& map, const Cancel& cancel = Cancel::never());
 
   /// The same of the same map, for what `visibility` says is seen of it: cells are weighted by the
   /// root of the share of their rays that arrive: the root mean square of 0 and 1.
@@ -40,7 +42,7 @@ class ProductTable {
     std::vector<float> variance;  ///< of the light's angle from the centre, on one axis
   };
   static constexpr std::size_t kSpread = 9;
-  void sum_cells(const EnvironmentView& map);
+  void sum_cells(const EnvironmentView& map, const Cancel& cancel);
   float greatest_share(const SkyVisibility& visibility, std::uint32_t side, std::size_t cell) const;
   void fill(const SkyVisibility* visibility, ThreadPool& pool);
   void weigh_places(const SkyPlaces& places, std::size_t begin, std::size_t end);

@@ -33,12 +33,12 @@ Rect film_region(const CameraDesc& camera, const Settings& settings) {
 }  // namespace
 
 Session::Session(std::shared_ptr<const Scene> scene, const Settings& settings,
-                 const std::optional<CameraDesc>& camera)
+                 const std::optional<CameraDesc>& camera, const Cancel& before)
     : scene_(std::move(scene)),
       camera_(chosen_camera(scene_, camera)),
       settings_(checked(camera_, settings)),
       filter_(settings_.pixel_filter, settings_.filter_width),
-      context_(make_context(*scene_, settings_, filter_.view())),
+      context_(make_context(*scene_, settings_, filter_.view(), before)),
       light_samples_(context_.light_samples),
       rule_(settings_, context_.light_samples),
       pool_(settings_.threads),

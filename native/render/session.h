@@ -43,9 +43,11 @@ class Session {
  public:
   /// @param camera  in place of the scene's own, as a viewport looks from somewhere else all the
   ///                time; nothing of the scene is built anew. Its motion is what the scene's has.
+  /// @param before  ends what is to be done before it starts, which then throws Cancelled
   /// Throws std::invalid_argument: scene not committed, no camera, a setting out of range.
   Session(std::shared_ptr<const Scene> scene, const Settings& settings,
-          const std::optional<CameraDesc>& camera = std::nullopt);
+          const std::optional<CameraDesc>& camera = std::nullopt,
+          const Cancel& before = Cancel::never());
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;

@@ -20,9 +20,11 @@ bool not_finite(float value) {
 }
 
 template <class T>
-std::uint64_t clean(T* texels, std::size_t count, std::uint32_t channels, ThreadPool& pool) {
+std::uint64_t clean(T* texels, std::size_t count, std::uint32_t channels, ThreadPool& pool,
+                    const Cancel& cancel) {
   std::atomic<std::uint64_t> found = 0;
   pool.for_each_chunk(count, kGrain, [&](std::size_t first, std::size_t last) {
+    if (cancel.raised()) return;
     std::uint64_t bad = 0;
     for (T* p = texels + first * channels; p < texels + last * channels; p += channels) {
       bool any = false;
@@ -54,10 +56,11 @@ Vec4 converted(Vec4 stored, const TextureColor& color) {
 
 template <class Reader, class T>
 void convert(const Reader& texel, T* out, std::uint32_t channels, const TextureColor& color,
-             ThreadPool& pool) {
+             ThreadPool& pool, const Cancel& cancel) {
   const auto width = static_cast<std::size_t>(texel.width);
   const auto rows = static_cast<std::size_t>(texel.height);
   pool.for_each_chunk(rows, 1 + kGrain / width, [&](std::size_t first, std::size_t last) {
+    if (cancel.raised()) return;
     T* p = out + first * width * channels;
     for (std::size_t y = first; y < last; ++y) {
       for (std::size_t x = 0; x < width; ++x, p += channels) {
@@ -75,33 +78,36 @@ void convert(const Reader& texel, T* out, std::uint32_t channels, const TextureC
 
 }  // namespace
 
-std::uint64_t clean_texels(Texels& texels, ThreadPool& pool) {
+std::uint64_t clean_texels(Texels& texels, ThreadPool& pool, const Cancel& cancel) {
   const std::size_t count = std::size_t{texels.width} * texels.height;
   if (texels.type == TexelType::kHalf) {
-    return clean(reinterpret_cast<StoredHalf*>(texels.data.get()), count, texels.channels, pool);
+    return clean(reinterpret_cast<StoredHalf*>(texels.data.get()), count, texels.channels, pool,
+                 cancel);
   }
   if (texels.type == TexelType::kFloat) {
-    return clean(reinterpret_cast<float*>(texels.data.get()), count, texels.channels, pool);
+    return clean(reinterpret_cast<float*>(texels.data.get()), count, texels.channels, pool, cancel);
   }
   return 0;
 }
 
-Texels convert_texels(Texels texels, const TextureColor& color, ThreadPool& pool) {
+Texels convert_texels(Texels texels, const TextureColor& color, ThreadPool& pool,
+                      const Cancel& cancel) {
   Texels out;
   out.width = texels.width;
   out.height = texels.height;
   out.channels = texels.channels;
   out.type = converted_type(texels.type);
   out.data.reset(new std::byte[out.byte_count()]);
-  with_reader(
-      texels.type, texels.channels, texels.data.get(), texels.width, texels.height,
-      [&](const auto& texel) {
-        if (out.type == TexelType::kFloat) {
-          convert(texel, reinterpret_cast<float*>(out.data.get()), out.channels, color, pool);
-        } else {
-          convert(texel, reinterpret_cast<StoredHalf*>(out.data.get()), out.channels, color, pool);
-        }
-      });
+  with_reader(texels.type, texels.channels, texels.data.get(), texels.width, texels.height,
+              [&](const auto& texel) {
+                if (out.type == TexelType::kFloat) {
+                  convert(texel, reinterpret_cast<float*>(out.data.get()), out.channels, color,
+                          pool, cancel);
+                } else {
+                  convert(texel, reinterpret_cast<StoredHalf*>(out.data.get()), out.channels, color,
+                          pool, cancel);
+                }
+              });
   return out;
 }
 

@@ -206,10 +206,11 @@ void make_rows(const LevelShape& shape, const TexelReader<T, kChannels>& texel, 
 }  // namespace
 
 void make_coarser(const LevelShape& shape, const std::byte* from, std::uint32_t width,
-                  std::uint32_t height, std::byte* to, ThreadPool& pool) {
+                  std::uint32_t height, std::byte* to, ThreadPool& pool, const Cancel& cancel) {
   with_reader(shape.type, shape.channels, from, width, height, [&](const auto& texel) {
     const std::size_t grain = 1 + (std::size_t{1} << 14) / width;
     pool.for_each_chunk(coarser_side(height), grain, [&](std::size_t first, std::size_t last) {
+      if (cancel.raised()) return;
       make_rows(shape, texel, to, static_cast<std::uint32_t>(first),
                 static_cast<std::uint32_t>(last));
     });

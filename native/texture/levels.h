@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "io/texels.h"
+#include "parallel/cancel.h"
 #include "parallel/thread_pool.h"
 
 namespace komorebi {
@@ -15,7 +16,7 @@ inline std::uint32_t coarser_side(std::uint32_t side) {
 
 /// Writes the level above a picture's: each texel the mean of what it covers, of light (decoded by
 /// the sRGB curve where `srgb`), colours weighed by alpha where they are straight ones once divided
-/// by it.
+/// by it. Cancelled, it leaves it half done.
 struct LevelShape {
   TexelType type;
   std::uint32_t channels;
@@ -25,6 +26,7 @@ struct LevelShape {
   bool finest = false;
 };
 void make_coarser(const LevelShape& shape, const std::byte* from, std::uint32_t width,
-                  std::uint32_t height, std::byte* to, ThreadPool& pool);
+                  std::uint32_t height, std::byte* to, ThreadPool& pool,
+                  const Cancel& cancel = Cancel::never());
 
 }  // namespace komorebi

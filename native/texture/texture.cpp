@@ -33,7 +33,7 @@ std::uint32_t level_of(float width, std::uint32_t texels) {
 }  // namespace
 
 Texture::Texture(std::string name, Texels texels, const TextureColor& color, ThreadPool& pool,
-                 const TextureLevels& kept)
+                 const TextureLevels& kept, const Cancel& cancel)
     : name_(std::move(name)), srgb_(color.srgb && !color.has_matrix), data_(color.data) {
   const bool fits = texels.width > 0 && texels.height > 0 && texels.width <= kMaxSide &&
                     texels.height <= kMaxSide && (texels.channels == 1 || texels.channels == 4) &&
@@ -43,13 +43,15 @@ Texture::Texture(std::string name, Texels texels, const TextureColor& color, Thr
                                 std::to_string(texels.width) + " × " +
                                 std::to_string(texels.height) + " texels");
   }
-  nonfinite_ = clean_texels(texels, pool);
-  if (color.has_matrix) texels = convert_texels(std::move(texels), color, pool);
+  nonfinite_ = clean_texels(texels, pool, cancel);
+  cancel.check();
+  if (color.has_matrix) texels = convert_texels(std::move(texels), color, pool, cancel);
+  cancel.check();
   channels_ = texels.channels;
   type_ = texels.type;
   levels_.push_back({texels.data.get(), texels.width, texels.height});
   finest_ = std::move(texels.data);
-  if (kept.coarser || kept.skip > 0) add_levels(pool, kept.skip);
+  if (kept.coarser || kept.skip > 0) add_levels(pool, kept.skip, cancel);
   if (!kept.coarser) keep_first_level();
 }
 
@@ -75,7 +77,7 @@ std::shared_ptr<const Texture> Texture::missing(std::string name) {
   return std::make_shared<const Texture>(std::move(name), std::move(texels), TextureColor(), pool);
 }
 
-void Texture::add_levels(ThreadPool& pool, std::uint32_t skip) {
+void Texture::add_levels(ThreadPool& pool, std::uint32_t skip, const Cancel& cancel) {
   const std::size_t texel = channels_ * texel_bytes(type_);
   std::vector<std::size_t> offset;
   std::size_t room = 0;
@@ -91,7 +93,9 @@ void Texture::add_levels(ThreadPool& pool, std::uint32_t skip) {
   LevelShape shape = {type_, channels_, srgb_, !data_, true};
   for (std::size_t i = 1; i < levels_.size(); ++i) {
     std::byte* to = coarser_.data() + offset[i - 1];
-    make_coarser(shape, levels_[i - 1].data, levels_[i - 1].width, levels_[i - 1].height, to, pool);
+    make_coarser(shape, levels_[i - 1].data, levels_[i - 1].width, levels_[i - 1].height, to, pool,
+                 cancel);
+    cancel.check();
     shape.finest = false;
     levels_[i].data = to;
   }

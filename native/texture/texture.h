@@ -10,6 +10,7 @@
 #include "core/vector.h"
 #include "io/texels.h"
 #include "parallel/array.h"
+#include "parallel/cancel.h"
 #include "texture/sampling.h"
 
 namespace komorebi {
@@ -38,8 +39,9 @@ class Texture {
  public:
   /// Numbers that are not finite become 0, and are counted with their texel.
   /// @throws std::invalid_argument naming the texture when it has no texels or too many
+  ///         Cancelled
   Texture(std::string name, Texels texels, const TextureColor& color, ThreadPool& pool,
-          const TextureLevels& kept = {});
+          const TextureLevels& kept = {}, const Cancel& cancel = Cancel::never());
 
   /// Tiles by their UDIM numbers: 1001 + column + 10 · row. Where there is no tile, magenta.
   /// @throws std::invalid_argument
@@ -84,7 +86,7 @@ class Texture {
     std::uint32_t width, height;
   };
 
-  void add_levels(ThreadPool& pool, std::uint32_t skip);
+  void add_levels(ThreadPool& pool, std::uint32_t skip, const Cancel& cancel);
   void keep_first_level();
 
   std::string name_;

@@ -1,16 +1,14 @@
-"""F12 in a window (under Xvfb): tiles appear as they finish.
+"""A final render in a window (under Xvfb): tiles appear as they finish, layers and blur are right.
 
-Esc cannot be pressed from outside without an X client; test_process.py cancels by Ctrl-C instead.
+test_render_window.py presses the keys.
 """
 
-import contextlib
-import os
 import re
 import shutil
-import subprocess
 
 import bpy
 import support
+import x_screen
 
 # Runs in a Blender with a window: starts a render and watches it.
 WATCH = """
@@ -54,29 +52,16 @@ bpy.app.timers.register(guarded, first_interval=1.0, persistent=True)
 """
 
 
-@contextlib.contextmanager
 def screen(size="960x540x24", frame_buffer=None):
     """A display of its own; ends with the test. Its pixels are a file in `frame_buffer`, if given."""
-    program = shutil.which("Xvfb")
-    if program is None:
+    if shutil.which("Xvfb") is None:
         raise support.Skip("Xvfb is not installed")
-    reading, writing = os.pipe()
-    server = subprocess.Popen(
-        [program, "-displayfd", str(writing), "-screen", "0", size, "-nolisten", "tcp",
-         *(["-fbdir", str(frame_buffer)] if frame_buffer else [])],
-        pass_fds=(writing,), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-    )  # fmt: skip
-    os.close(writing)
-    try:
-        with os.fdopen(reading) as numbers:
-            yield ":" + numbers.readline().strip()
-    finally:
-        server.terminate()
-        server.wait()
+    return x_screen.screen(size, frame_buffer)
 
 
-def run(text, folder):
-    """Runs Python text in a Blender with a window, with the add-on on; what it said."""
+def run(text, folder, size="960x540", timeout=120, **environment):
+    """Runs Python text in a Blender with a window of 960 × 540 pixels at the bottom left of a screen
+    of `size`, with the add-on on; what it said."""
     if support.IS_MODULE:
         raise support.Skip("Blender as a Python module has no window")
     path = folder / "watch.py"
@@ -84,12 +69,12 @@ def run(text, folder):
         f"import sys; sys.path.insert(0, {str(support.HERE)!r})\nimport support; support.enable()\n"
         + text
     )
-    with screen(frame_buffer=folder) as display:
+    with screen(f"{size}x24", folder) as display:
         done = support.process(
             [bpy.app.binary_path, "--factory-startup", "--no-window-focus", "-p", "0", "0", "960",
              "540", "--python-exit-code", "3", "-P", path],
-            timeout=120, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1",
-            KOMOREBI_SCREEN=str(folder / "Xvfb_screen0"),
+            timeout=timeout, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1",
+            KOMOREBI_SCREEN=str(folder / "Xvfb_screen0"), **environment,
         )  # fmt: skip
     assert "DONE" in done.output, done
     return done
