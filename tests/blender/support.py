@@ -297,9 +297,13 @@ def compositor_tree(scene):
 
 
 def resident_bytes():
-    """Memory that this process holds (Linux), without what the allocator keeps for later."""
+    """Memory that this process holds (Linux), without what the allocators keep for later: the C
+    library's and Blender's, which may be jemalloc (it keeps pages for ten seconds)."""
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).malloc_trim(0)
+    with contextlib.suppress(OSError, AttributeError):
+        jemalloc = ctypes.CDLL("libjemalloc.so.2", os.RTLD_NOLOAD | os.RTLD_NOW)
+        jemalloc.mallctl(b"arena.4096.purge", None, None, None, 0)  # 4096: of all arenas
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 

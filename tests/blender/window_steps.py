@@ -3,8 +3,10 @@
 Used inside that Blender; test_viewport.py starts it. A failed step ends Blender with code 3.
 """
 
+import contextlib
 import os
 import sys
+import threading
 import time
 import traceback
 
@@ -43,9 +45,39 @@ def space():
     return view()["area"].spaces.active
 
 
+@contextlib.contextmanager
+def override(of=None):
+    """bpy.context.temp_override of view() or of another, for operators that change windows and
+    areas, while viewports stand still.
+
+    Up to Python 3.11 Blender itself crashes else, now and then: where such an operator takes what
+    was overridden out of the context, it holds another thread's lock of the interpreter for its own
+    (BPY_context_dict_clear_members_array), whoever's thread that is.
+    """
+    held = [] if sys.version_info >= (3, 12) else [v._worker for v in viewports()]
+    for worker in held:
+        worker.pause(True)
+    end = time.monotonic() + 10.0
+    while held and not _all_wait() and time.monotonic() < end:
+        time.sleep(0.002)
+    try:
+        with bpy.context.temp_override(**(of or view())):
+            yield
+    finally:
+        for worker in held:
+            worker.pause(False)
+
+
+def _all_wait():
+    """Whether every thread but this waits for a condition, and so runs nothing of Python's."""
+    frames = sys._current_frames()
+    others = [t.ident for t in threading.enumerate() if t is not threading.current_thread()]
+    return all(i in frames and frames[i].f_code.co_filename == threading.__file__ for i in others)
+
+
 def alone():
     """The viewport fills the window, with nothing over the picture."""
-    with bpy.context.temp_override(**view()):
+    with override():
         bpy.ops.screen.screen_full_area(use_hide_panels=True)
     yield 0.3
     shown = space()

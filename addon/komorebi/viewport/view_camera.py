@@ -88,6 +88,9 @@ def view_camera(engine: Any, context: Any, depsgraph: Any) -> ViewCamera | None:
             frame = _camera_frame(context, camera)
             if context.scene.render.use_border:
                 border = _within(frame, context.scene.render)
+            elif camera.data.show_passepartout and camera.data.passepartout_alpha == 1.0:
+                # Nothing is seen of what lies outside; the frame may end within a pixel.
+                border = (frame[0] - 1, frame[1] - 1, frame[2] + 1, frame[3] + 1)
             if shape.kind == "PANO":
                 kind, matrix, film = KINDS["PANO"], pose, frame
                 near, far = shape.clip_start, shape.clip_end

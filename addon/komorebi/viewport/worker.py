@@ -202,7 +202,11 @@ class Worker:
                 if request is not None:
                     self._take_back(request)
             except Exception as error:
-                self._fail(error)
+                # Another view may be one that can be rendered; another scene comes by itself.
+                if request is not None and self._request is not request:
+                    self._scene = self._built = self._request = None
+                self.error = str(error)
+                self._redraw()
         self._scene = self._built = self._request = None
         self.view_denoiser.close()
         keys.close(id(self))
@@ -218,11 +222,6 @@ class Worker:
         with self._condition:
             if self._wanted.scene is None and not self._wanted.stopped:
                 self._wanted.scene, self._wanted.changed = request, True
-
-    def _fail(self, error: Exception) -> None:
-        self.error = str(error)
-        self._scene = self._built = self._request = None
-        self._redraw()
 
     def _build(self, request: SceneRequest, cancel: Any, view: ViewCamera | None) -> None:
         self.error, self.statistics = "", Statistics(stage="Building the scene")
@@ -264,6 +263,7 @@ class Worker:
 
     def _render(self, request: SceneRequest, view: ViewCamera) -> None:
         """Picture after picture until the last sample, or until something else is wanted."""
+        self.error = ""
         final, settings = request.pixel_size, request.settings
         pixel = first_pixel(view.width, view.height, request.start_resolution, final)
         is_first = True
