@@ -207,11 +207,17 @@ def _run_session(
         raise
     if session.error:
         raise RenderError(session.error)
-    picture = None
-    if frame.oidn and not cancelled:
+    fields, picture = metadata.fields(frame, session), None
+    denoises = bool(frame.oidn) and not cancelled
+    if show_tiles or not denoises:  # to be seen meanwhile, and there when denoising is given up
+        writer.finish(session, fields)
+    if denoises:
         progress.stage("Denoising")
         picture = _denoised(engine, session, frame)
-    writer.finish(session, metadata.fields(frame, session), picture)
+        if not show_tiles:
+            writer.finish(session, fields, picture)
+        elif picture is not None:
+            writer.replace(session, picture)
     progress.update(session, final=True)
 
 

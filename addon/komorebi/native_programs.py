@@ -32,7 +32,12 @@ def load(
     """With all textures of a scene in memory; `warnings` gets sentences on what is wrong. Raises
     core.Cancelled."""
     found = native_texture.load(
-        core, images(data), data.texture_limit, threads, warnings.append, _averaged(data),
+        core,
+        images(data),
+        data.texture_limit,
+        threads,
+        warnings.append,
+        _averaged(data),
         cancel,
     )
     return Programs(core, found)

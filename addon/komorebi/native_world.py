@@ -55,7 +55,9 @@ def load(
     if known_as is None:
         return native
     if world.image is not None:
-        native.environment = cache.get(known_as, partial(_native_environment, core, world.image, cancel))
+        native.environment = cache.get(
+            known_as, partial(_native_environment, core, world.image, cancel)
+        )
         return native
     assert world.program is not None
     light = programs.program(world.program)

@@ -59,15 +59,22 @@ class ResultWriter:
 
         `fields` go into the file of the picture.
         """
+        self._write_all(session, self._passes, combined)
+        result = self._engine.get_result()
+        for name, value in fields.items():
+            result.stamp_data_add_field(name, value)
+
+    def replace(self, session: Any, combined: FloatArray) -> None:
+        """Writes Combined anew."""
+        self._write_all(session, self._passes[:1], combined)
+
+    def _write_all(self, session: Any, passes: list[Pass], combined: FloatArray | None) -> None:
         # In bands, so that a large picture is not held a third time on its way.
         rows = max(1, BAND_PIXELS // self._width)
         for y in range(0, self._height, rows):
             height = min(rows, self._height - y)
             band = None if combined is None else combined[y : y + height]
-            self._write(session, (0, y, self._width, height), self._passes, band)
-        result = self._engine.get_result()
-        for name, value in fields.items():
-            result.stamp_data_add_field(name, value)
+            self._write(session, (0, y, self._width, height), passes, band)
 
     def _write(
         self, session: Any, tile: Tile, passes: list[Pass], combined: FloatArray | None = None

@@ -21,7 +21,7 @@ PREVIEW: dict[str, Any] = {
     "use_adaptive_sampling": False,
     "use_denoising": False,
     "use_fast_gi": False,
-    "time_limit": 0.0,
+    "time_limit": 0.2,  # seconds; what fits of the samples, so that icons do not make one wait
     "film_exposure": 1.0,
     "world_resolution": 256,
 }

@@ -2,6 +2,7 @@
 
 #include "core/environment.h"
 #include "core/octahedral.h"
+#include "core/sky_places.h"
 
 /// Sampling of an environment map in proportion to its product with the clamped cosine of a
 /// surface. Normals are put into bins, and for each of these a table over coarse cells of the map
@@ -20,11 +21,22 @@ struct ProductView {
   std::uint32_t rows = 0, columns = 0;          ///< cells
   const std::uint32_t* patch_row = nullptr;     ///< [rows + 1]
   const std::uint32_t* patch_column = nullptr;  ///< [columns + 1]
-  const std::uint32_t* row_cdf = nullptr;       ///< [bins²][rows + 1]; all 0 if there is no light
-  const std::uint32_t* column_cdf = nullptr;    ///< [bins²][rows][columns + 1]
+  /// [bins² and those of places][rows + 1]; all 0 if there is no light.
+  const std::uint32_t* row_cdf = nullptr;
+  const std::uint32_t* column_cdf = nullptr;  ///< [the same][rows][columns + 1]
   /// Patch rows in a cell: [columns][height + 1 + rows]; cell row r starts at patch_row[r] + r.
   const std::uint32_t* patch_row_cdf = nullptr;
+  SkyPlacesView places;  ///< whose bins follow the bins² of the whole scene
 };
+
+/// Which of the tables is for surfaces of this normal (world space, unit) at this place.
+inline std::uint32_t product_bin(const EnvironmentView& e, const ProductView& p, const Vec3& normal,
+                                 const Vec3& at) {
+  const Vec3 local = e.texture_from_world * normal;
+  const std::uint32_t of_place = table_of_place(p.places, local, at);
+  if (of_place != kNoTable) return p.bins * p.bins + of_place;
+  return octahedral_cell(local, p.bins);
+}
 
 namespace detail {
 
@@ -74,10 +86,11 @@ inline float below_one(double fraction) {
 }  // namespace detail
 
 /// A direction with density about proportional to radiance · max(0, cos) for surfaces of this
-/// normal (world space, unit), and positive wherever that product is. pdf = 0: there is no light.
+/// normal (world space, unit) at this place, and positive wherever that product is. pdf = 0: there
+/// is no light.
 inline EnvironmentSample sample_product(const EnvironmentView& e, const ProductView& p,
-                                        const Vec3& normal, const Bits2& bits) {
-  const std::uint32_t bin = octahedral_cell(e.texture_from_world * normal, p.bins);
+                                        const Vec3& normal, const Vec3& at, const Bits2& bits) {
+  const std::uint32_t bin = product_bin(e, p, normal, at);
   const std::uint32_t* row_cdf = p.row_cdf + bin * (p.rows + 1);
   if (row_cdf[p.rows] == 0) return {normal, Vec3(0.0f), 0.0f};
   const double u = (static_cast<double>(bits.x) + 0.5) * 2.3283064365386963e-10;  // 2^-32
@@ -102,14 +115,15 @@ inline EnvironmentSample sample_product(const EnvironmentView& e, const ProductV
                               detail::below_one(patch_row.fraction), probability);
 }
 
-/// The density of sample_product choosing `direction` (world space, unit) for that normal.
+/// The density of sample_product choosing `direction` (world space, unit) for that normal and
+/// place.
 inline float product_pdf(const EnvironmentView& e, const ProductView& p, const Vec3& normal,
-                         const Vec3& direction) {
-  const std::uint32_t bin = octahedral_cell(e.texture_from_world * normal, p.bins);
+                         const Vec3& at, const Vec3& direction) {
+  const std::uint32_t bin = product_bin(e, p, normal, at);
   const std::uint32_t* row_cdf = p.row_cdf + bin * (p.rows + 1);
   if (row_cdf[p.rows] == 0) return 0.0f;
-  const auto at = detail::locate(e, e.texture_from_world * direction);
-  const std::uint32_t patch_row = at.patch.row, patch_column = at.patch.column;
+  const auto found = detail::locate(e, e.texture_from_world * direction);
+  const std::uint32_t patch_row = found.patch.row, patch_column = found.patch.column;
   const std::uint32_t row = detail::cell_of(patch_row, e.height + 1, p.rows);
   const std::uint32_t column = detail::cell_of(patch_column, e.width, p.columns);
   const std::uint32_t first_row = p.patch_row[row];
@@ -121,8 +135,8 @@ inline float product_pdf(const EnvironmentView& e, const ProductView& p, const V
                      p.patch_row[row + 1] - first_row, patch_row - first_row) *
        detail::share(detail::patch_columns(e, patch_row), p.patch_column[column],
                      p.patch_column[column + 1], patch_column));
-  return detail::density_in_patch(e, at.patch, detail::patch_weights(e, at.patch), at.s,
-                                  at.z_fraction, probability);
+  return detail::density_in_patch(e, found.patch, detail::patch_weights(e, found.patch), found.s,
+                                  found.z_fraction, probability);
 }
 
 }  // namespace komorebi

@@ -41,14 +41,31 @@ LightMap make_light_map(std::string name, std::uint32_t width, std::uint32_t hei
 }
 
 void LightMap::put(std::uint32_t first, std::uint32_t count, float* rgb) {
-  if (words_ == nullptr && floats_ == nullptr) {
-    words_.reset(new std::uint32_t[texel_count()]);
-    std::fill_n(words_.get(), texel_count(), kBlack);
-  }
   const std::size_t texels = std::size_t{count} * width_;
   clean(rgb, texels);
+  if (words_ == nullptr && floats_ == nullptr) begin(texels, rgb);
   while (!store(std::uint64_t{first} * width_, texels, rgb)) widen();
-  is_blank_ = false;
+}
+
+// A large map takes no room that its first texels show to be too narrow.
+void LightMap::begin(std::size_t texels, const float* rgb) {
+  std::uint32_t word = 0;
+  bool rgbe = true, half = true;
+  for (std::size_t i = 0; i < texels && rgbe; ++i) rgbe = exact_rgbe(rgb + 3 * i, &word);
+  for (std::size_t i = 0; i < 3 * texels && !rgbe && half; ++i) {
+    half = float_from_half(half_from_float(rgb[i])) == rgb[i];
+  }
+  const std::uint64_t count = texel_count();
+  if (rgbe) {
+    words_.reset(new std::uint32_t[count]);
+    std::fill_n(words_.get(), count, kBlack);
+  } else if (half) {
+    storage_ = LightStorage::kHalf;
+    words_.reset(new std::uint32_t[(3 * count + 1) / 2]());
+  } else {
+    storage_ = LightStorage::kFloat;
+    floats_.reset(new float[3 * count]());
+  }
 }
 
 void LightMap::clean(float* p, std::size_t texels) {
@@ -95,7 +112,7 @@ void LightMap::widen() {
     wider.storage_ = LightStorage::kHalf;
     wider.words_.reset(new std::uint32_t[(3 * count + 1) / 2]());
     bool exact = true;
-    for (std::uint64_t i = 0; i < count && exact && !is_blank_; ++i) {
+    for (std::uint64_t i = 0; i < count && exact; ++i) {
       const Vec3 value = texel(i);
       exact = wider.store(i, 1, &value.x);
     }
@@ -105,8 +122,8 @@ void LightMap::widen() {
   }
   if (wider.storage_ == LightStorage::kFloat) {
     wider.words_.reset();
-    wider.floats_.reset(new float[3 * count]());
-    for (std::uint64_t i = 0; i < count && !is_blank_; ++i) {
+    wider.floats_.reset(new float[3 * count]);
+    for (std::uint64_t i = 0; i < count; ++i) {
       const Vec3 value = texel(i);
       std::copy_n(&value.x, 3, wider.floats_.get() + 3 * i);
     }

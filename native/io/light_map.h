@@ -39,6 +39,7 @@ class LightMap {
   std::size_t byte_count() const;
 
  private:
+  void begin(std::size_t texels, const float* rgb);
   void clean(float* rgb, std::size_t texels);
   bool store(std::uint64_t first, std::size_t texels, const float* rgb);
   void widen();
@@ -46,7 +47,6 @@ class LightMap {
   std::string name_;
   std::uint32_t width_, height_;
   LightStorage storage_ = LightStorage::kRgbe;
-  bool is_blank_ = true;  ///< nothing was put in
   std::unique_ptr<float[]> floats_;
   std::unique_ptr<std::uint32_t[]> words_;
   float max_radiance_ = 0.0f;

@@ -100,7 +100,7 @@ void widen(T* texels, std::size_t count, std::size_t channels, bool associate, b
 /// which each takes little time. `row` is negative, from the top one on.
 bool read_bands(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
                 std::byte* top, OIIO::stride_t row, const Cancel& cancel) {
-  const int strip = spec.get_int_attribute("tiff:RowsPerStrip", 1);
+  const int strip = std::clamp(spec.get_int_attribute("tiff:RowsPerStrip", 1), 1, spec.height);
   const int band = spec.tile_height > 1 ? spec.tile_height : (kRows + strip - 1) / strip * strip;
   for (int done = 0; done < spec.height; done += band) {
     cancel.check();

@@ -98,7 +98,7 @@ bool BounceTracer::find_more_light(const RenderContext& context, std::uint32_t v
 
 float BounceTracer::light_share(std::uint32_t surface, const Vec3& direction) const {
   return light_ray_share(context_, surfaces_.normal(surface), surfaces_.geometric_normal(surface),
-                         direction);
+                         surfaces_.leaving_origin(surface), direction);
 }
 
 /// Of the rays that have met nothing.
@@ -107,8 +107,9 @@ void BounceTracer::add_sky(const Visit& visit) const {
   for (std::uint32_t i = 0; i < rays.count; ++i) {
     if (hits_[i].valid()) continue;
     const State& state = states_[i];
-    const Vec3 direction(rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]);
-    visit(state.path, scattered_sky(context_, state.throughput, state.normal, direction));
+    const Ray ray = rays[i];
+    visit(state.path,
+          scattered_sky(context_, state.throughput, state.normal, ray.origin, ray.direction));
   }
 }
 

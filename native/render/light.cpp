@@ -60,7 +60,8 @@ LightSample sample_sky(const RenderContext& context, const SurfacePoint& point, 
 
 LightSample sample_sky_product(const RenderContext& context, const SurfacePoint& point,
                                const Bits2& bits) {
-  const EnvironmentSample drawn = sample_product(context.sky, context.product, point.normal, bits);
+  const EnvironmentSample drawn =
+      sample_product(context.sky, context.product, point.normal, leaving_origin(point), bits);
   LightSample sample;
   sample.direction = drawn.direction;
   const float cosine = glm::dot(drawn.direction, point.normal);
@@ -79,9 +80,10 @@ LightSample sample_light(const RenderContext& context, const SurfacePoint& point
   return sample_ambient(context, point, Vec2(to_unit_float(bits.x), to_unit_float(bits.y)));
 }
 
-float light_pdf(const RenderContext& context, const Vec3& normal, const Vec3& direction) {
+float light_pdf(const RenderContext& context, const Vec3& normal, const Vec3& origin,
+                const Vec3& direction) {
   if (context.product.bins > 0) {
-    return product_pdf(context.sky, context.product, normal, direction);
+    return product_pdf(context.sky, context.product, normal, origin, direction);
   }
   const float of_cosine = max_of(glm::dot(direction, normal), 0.0f) * kInvPi;
   if (context.method == Method::kWorldLight) {

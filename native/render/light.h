@@ -19,8 +19,10 @@ struct LightSample {
 LightSample sample_light(const RenderContext& context, const SurfacePoint& point,
                          const Sampler& sampler, std::uint32_t index);
 
-/// The density, by solid angle, of sample_light drawing a direction for a surface of this normal.
-float light_pdf(const RenderContext& context, const Vec3& normal, const Vec3& direction);
+/// The density, by solid angle, of sample_light drawing a direction for a surface of this normal,
+/// `origin` being its leaving_origin.
+float light_pdf(const RenderContext& context, const Vec3& normal, const Vec3& origin,
+                const Vec3& direction);
 
 /// The shadow terminator of a point at its ray's time, on the side that light comes from.
 Terminator terminator(const RenderContext& context, const Hit& hit, float time,

@@ -21,6 +21,7 @@ void sample_lights_scalar(const RenderContext& context, const LightBlock& block)
     SurfacePoint point;
     point.normal = entry(block.normal, p);
     point.geometric_normal = entry(block.geometric_normal, p);
+    point.position = entry(block.origin, p);  // with the offset 0 it is the leaving_origin
     const Sampler sampler(block.pixel_seed[p]);
     for (std::uint32_t j = 0; j < block.rays_per_point; ++j) {
       const LightSample drawn = sample_light(context, point, sampler, block.first_index[p] + j);
@@ -34,6 +35,17 @@ void sample_lights_scalar(const RenderContext& context, const LightBlock& block)
 }
 
 }  // namespace
+
+void place_bins(const RenderContext& context, const Columns& normal, const Columns& origin,
+                std::uint32_t count, std::uint32_t* bins) {
+  const ProductView& product = context.product;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec3 n(normal.x[i], normal.y[i], normal.z[i]);
+    const std::uint32_t table = table_of_place(product.places, context.sky.texture_from_world * n,
+                                               Vec3(origin.x[i], origin.y[i], origin.z[i]));
+    if (table != kNoTable) bins[i] = product.bins * product.bins + table;
+  }
+}
 
 void sample_lights(const RenderContext& context, const LightBlock& block) {
   const int index = active_kernel_index();

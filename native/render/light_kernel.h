@@ -18,6 +18,7 @@ struct LightBlock {
   std::uint32_t point_count = 0;
   const float* normal[3];            ///< of the shading
   const float* geometric_normal[3];  ///< on the same side
+  const float* origin[3];            ///< leaving_origin
   const std::uint32_t* pixel_seed;   ///< Sampler::pixel_seed
   const std::uint32_t* first_index;  ///< of the point's light rays
   std::uint32_t rays_per_point = 0;
@@ -25,6 +26,11 @@ struct LightBlock {
   float* direction[3];
   float* contribution[3];
 };
+
+/// Puts product_bin of the first `count` points in place of the bins that they have in the whole
+/// scene, where it is that of a place.
+void place_bins(const RenderContext& context, const Columns& normal, const Columns& origin,
+                std::uint32_t count, std::uint32_t* bins);
 
 /// sample_light (light.h) for many points at once, compiled for one instruction set; equal to it
 /// in every bit.

@@ -49,10 +49,22 @@ void ambient(const RenderContext& context, const LightBlock& block) {
       });
 }
 
+/// product_bin, one lane after another: what each looks up lies where its neighbours' does.
+HWY_INLINE Uint bins_at_places(const RenderContext& context, const LightBlock& block, std::size_t p,
+                               Uint bin) {
+  HWY_ALIGN std::uint32_t bins[hn::MaxLanes(TagU())];
+  hn::Store(bin, TagU(), bins);
+  const Columns normal{block.normal[0] + p, block.normal[1] + p, block.normal[2] + p};
+  place_bins(context, normal, {block.origin[0] + p, block.origin[1] + p, block.origin[2] + p},
+             static_cast<std::uint32_t>(hn::Lanes(TagU())), bins);
+  return hn::Load(TagU(), bins);
+}
+
 void product(const RenderContext& context, const LightBlock& block) {
+  const ProductView& product = context.product;
   const float* const m = entries(context.sky.texture_from_world);
   const float albedo[3] = {context.albedo.x, context.albedo.y, context.albedo.z};
-  ProductSteps steps(context.sky, context.product);
+  ProductSteps steps(context.sky, product);
   std::size_t points[ProductSteps::kMost], places[ProductSteps::kMost];
   const auto finish = [&]() HWY_ATTR {
     steps.choose();
@@ -76,7 +88,8 @@ void product(const RenderContext& context, const LightBlock& block) {
   for_each_ray(
       context, block,
       [&](std::size_t p) HWY_ATTR {
-        return octahedral_cell_lanes(times(m, load(block.normal, p)), context.product.bins);
+        const Uint bin = octahedral_cell_lanes(times(m, load(block.normal, p)), product.bins);
+        return product.places.exists() ? bins_at_places(context, block, p, bin) : bin;
       },
       [&](Uint bin, std::size_t p, Uint x, Uint y, std::size_t to) HWY_ATTR {
         points[steps.size()] = p;

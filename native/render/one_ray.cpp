@@ -97,8 +97,8 @@ Vec3 mean_light(const RenderContext& context, const SurfacePoint& point, const H
           light += drawn.contribution;
           return;
         }
-        light += drawn.contribution *
-                 light_ray_share(context, point.normal, point.geometric_normal, drawn.direction);
+        light += drawn.contribution * light_ray_share(context, point.normal, point.geometric_normal,
+                                                      leaving_origin(point), drawn.direction);
       });
   return light / static_cast<float>(context.light_samples);
 }
@@ -130,7 +130,7 @@ void add_bounces(const RenderContext& context, MaterialShader& shader, SurfacePo
     hit = intersect_scalar(context.scene, ray);
     if (!hit.valid()) {
       if (!shares_light(context, vertex)) return;
-      radiance += scattered_sky(context, throughput, from.normal, ray.direction);
+      radiance += scattered_sky(context, throughput, from.normal, from.origin, ray.direction);
       return;
     }
     point = surface_point(context.scene, hit, ray);

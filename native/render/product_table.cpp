@@ -6,6 +6,7 @@
 #include "core/aabb.h"
 #include "parallel/thread_pool.h"
 #include "render/quantized_cdf.h"
+#include "render/sky_places.h"
 #include "render/sky_visibility.h"
 
 namespace komorebi {
@@ -106,7 +107,8 @@ void ProductTable::fill(const SkyVisibility* visibility, ThreadPool& pool) {
     for (std::size_t bin = begin; bin < end; ++bin) {
       const std::uint32_t side =
           SkyVisibility::side(Vec3(in_bin(static_cast<std::uint32_t>(bin), bins_, 0.5, 0.5)));
-      fill_bin(static_cast<std::uint32_t>(bin), {&seen[side * cells], cells});
+      const auto at = static_cast<std::uint32_t>(bin);
+      fill_bin(at, at, bins_, {&seen[side * cells], cells});
     }
   });
 }
@@ -161,8 +163,8 @@ void ProductTable::sum_cells(const EnvironmentView& map, const Cancel& cancel) {
       const double mean_cosine = has_centre ? std::min(1.0, length / energy) : 0.0;
       for (const double x : {0.0, 0.5, 1.0}) {
         for (const double y : {0.0, 0.5, 1.0}) {
-          cells.spread.push_back(
-              Vec3(edge_point(map, patch_column_[c] + x * patches, z0 + y * (z1 - z0))));
+          const Vec3 at(edge_point(map, patch_column_[c] + x * patches, z0 + y * (z1 - z0)));
+          cells.spread_cell.push_back(octahedral_cell(at, SkyVisibility::kGrid));
         }
       }
       cells.energy.push_back(energy);
@@ -188,17 +190,49 @@ float ProductTable::greatest_share(const SkyVisibility& visibility, std::uint32_
                                    std::size_t cell) const {
   float greatest = 0.0f;
   for (std::size_t k = 0; k < kSpread; ++k) {
-    greatest = max_of(greatest, visibility.share(side, cells_.spread[cell * kSpread + k]));
+    greatest =
+        max_of(greatest, visibility.share_of_cell(side, cells_.spread_cell[cell * kSpread + k]));
   }
   return greatest;
 }
 
-void ProductTable::fill_bin(std::uint32_t bin, std::span<const float> seen) {
-  const Vec3d middle = in_bin(bin, bins_, 0.5, 0.5);
+void ProductTable::add_places(const SkyPlaces& places, ThreadPool& pool) {
+  places_ = &places;
+  const std::size_t tables = std::size_t{bins_} * bins_ + places.tables().size();
+  row_cdf_.resize(tables * (rows_ + 1));
+  column_cdf_.resize(tables * rows_ * (columns_ + 1));
+  pool.for_each_chunk(places.tables().size(), 64, [&](std::size_t begin, std::size_t end) {
+    weigh_places(places, begin, end);
+  });
+}
+
+void ProductTable::weigh_places(const SkyPlaces& places, std::size_t begin, std::size_t end) {
+  std::vector<float> share(std::size_t{SkyPlaces::kGrid} * SkyPlaces::kGrid);
+  std::vector<float> seen(cells_.energy.size());
+  for (std::size_t i = begin; i < end; ++i) {
+    const SkyPlaces::Table& table = places.tables()[i];
+    const SkyPlaces::Table* const last = i > begin ? &table - 1 : nullptr;
+    if (last == nullptr || last->place != table.place || last->side != table.side) {
+      places.shares(table.place, table.side, share);
+      for (std::size_t cell = 0; cell < seen.size(); ++cell) {
+        float greatest = 0.0f;
+        for (std::size_t k = 0; k < kSpread; ++k) {
+          greatest = max_of(greatest, share[cells_.spread_cell[cell * kSpread + k]]);
+        }
+        seen[cell] = max_of(std::sqrt(greatest), kLeastSeen);
+      }
+    }
+    fill_bin(bins_ * bins_ + static_cast<std::uint32_t>(i), table.bin, SkyPlacesView::kBins, seen);
+  }
+}
+
+void ProductTable::fill_bin(std::uint32_t to, std::uint32_t bin, std::uint32_t bins,
+                            std::span<const float> seen) {
+  const Vec3d middle = in_bin(bin, bins, 0.5, 0.5);
   double bin_radius = 0.0;
   for (const double x : {0.0, 1.0}) {
     for (const double y : {0.0, 1.0})
-      bin_radius = std::max(bin_radius, angle(middle, in_bin(bin, bins_, x, y)));
+      bin_radius = std::max(bin_radius, angle(middle, in_bin(bin, bins, x, y)));
   }
   const Vec3 normal(middle);
   const auto reach = static_cast<float>(bin_radius);
@@ -219,9 +253,9 @@ void ProductTable::fill_bin(std::uint32_t bin, std::span<const float> seen) {
       product[c] = cells_.energy[first + c] * static_cast<double>(weight[c] * seen[first + c]);
     }
     row_weight[r] =
-        quantize_cdf(product, &column_cdf_[(std::size_t{bin} * rows_ + r) * (columns_ + 1)]);
+        quantize_cdf(product, &column_cdf_[(std::size_t{to} * rows_ + r) * (columns_ + 1)]);
   }
-  quantize_cdf(row_weight, &row_cdf_[std::size_t{bin} * (rows_ + 1)]);
+  quantize_cdf(row_weight, &row_cdf_[std::size_t{to} * (rows_ + 1)]);
 }
 
 ProductView ProductTable::view() const {
@@ -234,6 +268,7 @@ ProductView ProductTable::view() const {
   view.row_cdf = row_cdf_.data();
   view.column_cdf = column_cdf_.data();
   view.patch_row_cdf = patch_row_cdf_.data();
+  if (places_ != nullptr) view.places = places_->view();
   return view;
 }
 

@@ -9,6 +9,7 @@
 
 namespace komorebi {
 
+class SkyPlaces;
 class SkyVisibility;
 
 /// The tables of product importance sampling for one map; immutable. They belong to the texels and
@@ -23,6 +24,9 @@ class ProductTable {
   /// root of the share of their rays that arrive: the root mean square of 0 and 1.
   ProductTable(const ProductTable& map, const SkyVisibility& visibility, ThreadPool& pool);
 
+  /// Adds tables for what places see, once; `places` outlives the view.
+  void add_places(const SkyPlaces& places, ThreadPool& pool);
+
   ProductView view() const;
   std::size_t byte_count() const;
 
@@ -31,8 +35,9 @@ class ProductTable {
   struct Cells {
     std::vector<double> energy;  ///< luminance times solid angle, to a common factor
     std::vector<double> solid_angle;
-    std::vector<Vec3> centre;     ///< where its light comes from in the mean; unit length
-    std::vector<Vec3> spread;     ///< kSpread directions all over the cell, up to its corners
+    std::vector<Vec3> centre;  ///< where its light comes from in the mean; unit length
+    /// The cells of SkyVisibility that kSpread directions all over the cell fall into, corners too.
+    std::vector<std::uint32_t> spread_cell;
     std::vector<float> radius;    ///< bound of the angle from the centre to any point of the cell
     std::vector<float> variance;  ///< of the light's angle from the centre, on one axis
   };
@@ -40,12 +45,15 @@ class ProductTable {
   void sum_cells(const EnvironmentView& map, const Cancel& cancel);
   float greatest_share(const SkyVisibility& visibility, std::uint32_t side, std::size_t cell) const;
   void fill(const SkyVisibility* visibility, ThreadPool& pool);
-  void fill_bin(std::uint32_t bin, std::span<const float> seen);
+  void weigh_places(const SkyPlaces& places, std::size_t begin, std::size_t end);
+  void fill_bin(std::uint32_t to, std::uint32_t bin, std::uint32_t bins,
+                std::span<const float> seen);
 
   std::uint32_t bins_, rows_, columns_;
   Cells cells_;
   std::vector<std::uint32_t> patch_row_, patch_column_;
   std::vector<std::uint32_t> row_cdf_, column_cdf_, patch_row_cdf_;
+  const SkyPlaces* places_ = nullptr;
 };
 
 }  // namespace komorebi

@@ -11,9 +11,10 @@
 namespace komorebi {
 namespace {
 
-float scattered_share(const RenderContext& context, const Vec3& normal, const Vec3& direction) {
+float scattered_share(const RenderContext& context, const Vec3& normal, const Vec3& origin,
+                      const Vec3& direction) {
   const float scattered = max_of(glm::dot(direction, normal), 0.0f) * kInvPi;
-  const float both = scattered + light_pdf(context, normal, direction);
+  const float both = scattered + light_pdf(context, normal, origin, direction);
   return both > 0.0f ? scattered / both : 0.0f;
 }
 
@@ -50,15 +51,15 @@ bool scatter(const RenderContext& context, std::uint32_t vertex, const ScatterPo
 }
 
 float light_ray_share(const RenderContext& context, const Vec3& normal,
-                      const Vec3& geometric_normal, const Vec3& direction) {
+                      const Vec3& geometric_normal, const Vec3& origin, const Vec3& direction) {
   // A lifted ray may go where none is scattered to.
   if (!(glm::dot(direction, geometric_normal) > 0.0f)) return 1.0f;
-  return 1.0f - scattered_share(context, normal, direction);
+  return 1.0f - scattered_share(context, normal, origin, direction);
 }
 
 Vec3 scattered_sky(const RenderContext& context, const Vec3& throughput, const Vec3& normal,
-                   const Vec3& direction) {
-  const float share = scattered_share(context, normal, direction);
+                   const Vec3& origin, const Vec3& direction) {
+  const float share = scattered_share(context, normal, origin, direction);
   const Vec3 sky = environment_radiance(context.sky, direction);
   return clamp_light(throughput * (share * sky), context.clamp_indirect);
 }

@@ -48,13 +48,13 @@ inline bool shares_light(const RenderContext& context, std::uint32_t vertex) {
 /// The share that the light ray of such a vertex brings of the light from a direction above its
 /// surface, by the balance heuristic over the densities of both rays (Veach 1997, §9.2.4).
 float light_ray_share(const RenderContext& context, const Vec3& normal,
-                      const Vec3& geometric_normal, const Vec3& direction);
+                      const Vec3& geometric_normal, const Vec3& origin, const Vec3& direction);
 
-/// What the ray that left such a vertex, by `normal`, brings where it meets nothing, given the
-/// path's throughput from there on. It is light of that vertex, which clamps it apart from what
-/// light rays bring, as in Cycles.
+/// What the ray that left such a vertex, by `normal` from `origin`, brings where it meets nothing,
+/// given the path's throughput from there on. It is light of that vertex, which clamps it apart
+/// from what light rays bring, as in Cycles.
 Vec3 scattered_sky(const RenderContext& context, const Vec3& throughput, const Vec3& normal,
-                   const Vec3& direction);
+                   const Vec3& origin, const Vec3& direction);
 
 /// By which the light rays of a later vertex are drawn.
 RenderContext later_context(const RenderContext& context, std::uint32_t vertex);

@@ -9,6 +9,10 @@ namespace {
 /// ray: it is left only where so little of its variance would remain (docs/performance.md).
 constexpr float kWorthwhile = 0.45f;
 
+/// Places are looked at more closely if few rays let this much of the variance be expected by them,
+/// and get tables if it is confirmed.
+constexpr float kWorthSurvey = 0.97f, kWorthTables = 0.9f;
+
 /// A white map whose patches are the table's cells.
 const Environment& white_sky() {
   constexpr std::uint32_t kWidth = 64, kHeight = 31;
@@ -26,17 +30,34 @@ void SkyGuide::prepare(const Scene& scene, ThreadPool& pool, const Cancel& cance
       (context.product.bins == 0 && !(ambient && context.ao_sampling == AoSampling::kCosine))) {
     return;
   }
-  SkyVisibility visibility;
   RenderContext looked_by = context;
   if (context.fast_gi.last_vertex != kNone) end_in_ambient(looked_by);  // sees most of the sky
-  if (!measure_sky_visibility(looked_by, pool, cancel, visibility)) return;
+  SkySurvey survey;
+  if (!survey_sky(looked_by, kWholeSurvey, pool, cancel, survey)) return;
+  auto visibility = std::make_unique<const SkyVisibility>(survey);
+  auto places = std::make_unique<const SkyPlaces>(survey, *visibility, pool);
+  if (places->variance_left() < kWorthSurvey) {
+    SkySurvey closer;
+    if (!survey_sky(looked_by, kPlacesSurvey, pool, cancel, closer)) return;
+    if (closer.directions.size() > survey.directions.size()) {
+      visibility = std::make_unique<const SkyVisibility>(closer);
+      places = std::make_unique<const SkyPlaces>(closer, *visibility, pool);
+    }
+  }
   done_ = true;
+  const bool has_places = places->variance_left() < kWorthTables;
   if (ambient) {
-    if (visibility.variance_left() > kWorthwhile) return;
+    const float gained = has_places ? places->variance_left() : 1.0f;
+    if (visibility->variance_left() * gained > kWorthwhile) return;
     context.sky = white_sky().view();
   }
   const Environment& map = ambient ? white_sky() : *scene.world_environment();
-  table_ = std::make_unique<ProductTable>(map.product_table(), visibility, pool);
+  auto table = std::make_unique<ProductTable>(map.product_table(), *visibility, pool);
+  if (has_places) {
+    places_ = std::move(places);
+    table->add_places(*places_, pool);
+  }
+  table_ = std::move(table);
   context.product = table_->view();
 }
 

@@ -6,12 +6,14 @@
 #include "parallel/thread_pool.h"
 #include "render/context.h"
 #include "render/environment.h"
+#include "render/sky_places.h"
 
 namespace komorebi {
 
-/// Decides before a render where its light rays go: to the parts of the sky that the surfaces in
-/// view see (SkyVisibility). Under a map that is sampled by its product with the cosine, always;
-/// for ambient occlusion, where most rays would be spent on what hides the sky.
+/// Decides before a render where its light rays go: to the parts of the sky that its surfaces see
+/// (SkyVisibility), and where these see different parts, by their place (SkyPlaces). Under a map
+/// that is sampled by its product with the cosine, always; for ambient occlusion, where most rays
+/// would be spent on what hides the sky.
 class SkyGuide {
  public:
   /// Sets `sky` and `product` of a context that make_context made, once; valid as long as this
@@ -20,6 +22,7 @@ class SkyGuide {
 
  private:
   bool done_ = false;
+  std::unique_ptr<const SkyPlaces> places_;
   std::unique_ptr<const ProductTable> table_;
 };
 

@@ -148,6 +148,7 @@ class SurfaceBatch {
     for (std::size_t c = 0; c < 3; ++c) {
       block.normal[c] = &floats_[c][begin];
       block.geometric_normal[c] = &floats_[(context.bends_round ? 11 : 3) + c][begin];
+      block.origin[c] = &floats_[6 + c][begin];
     }
     block.pixel_seed = &pixel_seed_[begin];
     block.first_index = &first_index_[begin];

@@ -49,9 +49,9 @@ class Window:
             display = ":" + numbers.readline().strip()
         with open(f"{self._folder}/Xvfb_screen0", "rb") as file:
             self._map = mmap.mmap(file.fileno(), 0, prot=mmap.PROT_READ)
-        listener = socket.socket(socket.AF_UNIX)
-        listener.bind(f"{self._folder}/socket")
-        listener.listen(1)
+        self._listener = socket.socket(socket.AF_UNIX)
+        self._listener.bind(f"{self._folder}/socket")
+        self._listener.listen(1)
         self.log = Path(self._folder) / "log"
         with self.log.open("w") as log:
             self._blender = subprocess.Popen(
@@ -61,18 +61,21 @@ class Window:
                 stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                 env={**launch.environment(), "DISPLAY": display, "LIBGL_ALWAYS_SOFTWARE": "1"},
             )  # fmt: skip
-        listener.settimeout(1.0)
+        self._socket = self._accept()
+        self._socket.settimeout(START_SECONDS)
+
+    def _accept(self) -> socket.socket:
+        """The connection that Blender makes when its window is there."""
+        self._listener.settimeout(1.0)
         end = time.monotonic() + START_SECONDS
         while True:
             try:
-                self._socket, _ = listener.accept()
-                break
+                return self._listener.accept()[0]
             except TimeoutError:
                 if self._blender.poll() is not None or time.monotonic() > end:
                     said = self.log.read_text(errors="replace")[-300:]
                     self.close()
                     raise RuntimeError(f"Blender has no window: {said}") from None
-        self._socket.settimeout(START_SECONDS)
 
     def send(self, function: str, *arguments: Any) -> None:
         """Has a function of inside/window_job.py called as soon as Blender's timers run."""
@@ -108,7 +111,7 @@ class Window:
         found: list[tuple[float, np.ndarray]] = []
         last = self.raw()
         seen = start = time.monotonic()
-        while (now := time.monotonic()) < start + limit:
+        while (now := time.monotonic()) < start + (limit if found else max(limit, first)):
             if now > seen + (quiet if found else max(first, quiet)):
                 break
             raw = self.raw()
@@ -124,6 +127,9 @@ class Window:
 
     def close(self) -> None:
         """Ends Blender and the screen."""
+        for open_one in (self._listener, getattr(self, "_socket", None), self._map):
+            if open_one is not None:
+                open_one.close()
         self._blender.terminate()
         self._blender.wait()
         self._server.terminate()

@@ -106,6 +106,7 @@ def subjects():
     scene.view_layers[0].use_pass_mist, scene.view_layers[0].samples = True, 4
     scene.komorebi.method = "WORLD_LIGHT"
     scene.komorebi.use_adaptive_sampling = True
+    scene.komorebi.use_preview_adaptive_sampling = True
     if hasattr(scene, "cycles_curves"):
         scene.cycles_curves.shape = "RIBBONS"
     yield "world light", context_of(cube)

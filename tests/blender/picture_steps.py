@@ -14,7 +14,7 @@ import numpy as np
 from mathutils import Vector
 
 sys.path.insert(0, str(Path(__file__).parent))
-import window_steps as w  # noqa: E402
+import window_steps as w
 
 NAME, FOLDER = sys.argv[sys.argv.index("--") + 1 :]
 SCENES = Path(__file__).parents[2] / "blend_scenes"
@@ -42,7 +42,10 @@ def prepare(samples):
     scene = bpy.context.scene
     scene.render.engine = "KOMOREBI"
     scene.komorebi.method = "WORLD_LIGHT"
-    scene.komorebi.preview_samples = scene.komorebi.samples = samples
+    settings = scene.komorebi
+    settings.preview_samples = settings.samples = samples
+    settings.use_preview_denoising = settings.use_denoising = True
+    settings.preview_denoising_start_sample = samples  # the last picture alone
     return scene
 
 
@@ -62,7 +65,7 @@ def properties_tab(tab):
 
 def viewport():
     """The rendered viewport in Blender's interface."""
-    prepare(samples=128)
+    prepare(samples=32)
     properties_tab("RENDER")
     yield 0.3
     through_camera()
@@ -95,7 +98,7 @@ def full_view():
 
 def refines():
     """How the picture gets better after an edit."""
-    scene = prepare(samples=128)
+    scene = prepare(samples=64)
     yield from full_view()
     yield from w.finished(LIMIT)
     scene.world.node_tree.nodes["Mapping"].inputs["Rotation"].default_value[2] += 0.01
@@ -118,7 +121,7 @@ def until(holds):
 
 def passes():
     """The shading popover's render passes."""
-    prepare(samples=64)
+    prepare(samples=16)
     yield from full_view()
     for name in ("COMBINED", "NORMAL", "AO", "DIFFUSE_COLOR"):
         w.space().shading.render_pass = name
@@ -129,7 +132,7 @@ def passes():
 
 def studio():
     """A studio light in place of the scene's world, with the popover that says so."""
-    prepare(samples=64)
+    prepare(samples=16)
     yield from full_view()
     shading = w.space().shading
     shading.use_scene_world_render = False
@@ -142,19 +145,30 @@ def studio():
 
 def render():
     """The final render on its way, tile by tile."""
-    scene = prepare(samples=32)
+    from komorebi.progress import Progress
+
+    done = 0.0
+    update = Progress.update
+
+    def noted(self, session, final=False):
+        nonlocal done
+        done = session.progress()["fraction"]
+        update(self, session, final)
+
+    Progress.update = noted
+    scene = prepare(samples=16)
     yield 0.3
     scene.komorebi.use_progressive = False
     bpy.context.preferences.view.render_display_type = "AREA"
     with bpy.context.temp_override(window=w.view()["window"]):
         bpy.ops.render.render("INVOKE_DEFAULT")
-    yield 20
+    yield from until(lambda: done > 0.6)
     keep()
 
 
-def turntable(frames=30):
+def turntable(frames=36):
     """The view swings on a loop in front of the stair."""
-    prepare(samples=24)
+    prepare(samples=8)
     yield from full_view()
     space = w.space()
     space.use_render_border = True

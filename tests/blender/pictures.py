@@ -31,6 +31,17 @@ PICTURES = {
 FRAME_MILLISECONDS = 90
 
 
+def denoiser():
+    """The library that denoises: KOMOREBI_OIDN, or that of the tests' Blender 4.5."""
+    found = sorted(
+        (HERE.parents[1] / "build" / "venv" / "bpy").glob(
+            "lib/python*/site-packages/bpy/lib/libOpenImageDenoise.so*"
+        )
+    )
+    named = os.environ.get("KOMOREBI_OIDN") or (str(found[0]) if found else "")
+    return named or sys.exit("there is no Open Image Denoise: name a library by KOMOREBI_OIDN")
+
+
 def take(blender, user, name, folder):
     """Runs Blender; the screens that it has read, in their order: uint8 [height, width, 3]."""
     scene, (width, height), _ = PICTURES[name]
@@ -39,6 +50,7 @@ def take(blender, user, name, folder):
         environment = {
             **os.environ, "DISPLAY": display, "LIBGL_ALWAYS_SOFTWARE": "1",
             "KOMOREBI_SCREEN": str(folder / "Xvfb_screen0"), "PYTHONDONTWRITEBYTECODE": "1",
+            "KOMOREBI_OIDN": denoiser(),
             "BLENDER_USER_CONFIG": str(user / "config"),
             "BLENDER_USER_SCRIPTS": str(user / "scripts"),
             "BLENDER_USER_DATAFILES": str(user / "datafiles"),
@@ -81,7 +93,9 @@ def write(path, name, screens):
     if path.suffix == ".webp":
         # The band in the middle is what was rendered, without its dashed border; smaller, it has less
         # noise.
-        frames = [Image.fromarray(s[62:418, 4:-4]).resize((560, 316), Image.LANCZOS) for s in screens]
+        frames = [
+            Image.fromarray(s[62:418, 4:-4]).resize((560, 316), Image.LANCZOS) for s in screens
+        ]
         frames[0].save(
             path, save_all=True, append_images=frames[1:], duration=FRAME_MILLISECONDS, loop=0,
             quality=55, method=6,

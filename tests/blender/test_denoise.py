@@ -219,13 +219,21 @@ def test_picture_after_picture_in_one_process(folder):
                     assert result[:, :, :3].std() < 0.5 * given[:, :, :3].std()
         process = denoiser._process
         large = np.tile(noise, (4, 4, 1))
-        threading.Timer(0.1, denoiser.stop).start()
+        over = threading.Event()
+
+        def stop():
+            while not over.wait(0.05):
+                denoiser.stop()
+
+        threading.Thread(target=stop).start()
         try:
             denoiser.denoise(large, [])
         except RenderCancelled:
             pass
         else:
             raise AssertionError("it was not stopped")
+        finally:
+            over.set()
         denoiser.stop()  # what is not on
         assert denoiser.denoise(noise, []).shape == noise.shape
         assert denoiser._process is process and process.poll() is None

@@ -7,6 +7,10 @@ import support
 DEFAULTS = {
     "method": "AMBIENT_OCCLUSION", "samples": 32, "light_samples": 0, "sample_offset": 0,
     "use_adaptive_sampling": False, "adaptive_threshold": 0.0, "adaptive_min_samples": 0,
+    "use_preview_adaptive_sampling": False, "preview_adaptive_threshold": 0.0,
+    "preview_adaptive_min_samples": 0, "use_preview_denoising": False,
+    "preview_denoising_input_passes": "RGB_ALBEDO_NORMAL", "preview_denoising_prefilter": "FAST",
+    "preview_denoising_quality": "BALANCED", "preview_denoising_start_sample": 1,
     "time_limit": 0.0, "use_denoising": False,
     "seed": 0, "use_animated_seed": False, "ao_distance": 0.0, "ao_sampling": "COSINE",
     "environment_sampling": "PRODUCT", "pixel_filter": "BLACKMAN_HARRIS", "filter_width": 1.5,

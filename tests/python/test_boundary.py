@@ -161,6 +161,21 @@ def test_a_session_needs_a_committed_scene_with_a_camera() -> None:
         core.Session(empty, core.Settings())
 
 
+def test_a_session_may_be_cancelled_before_it_starts() -> None:
+    scene = shapes.scene(committed=False)
+    pixels = np.random.default_rng(1).random((8, 16, 3)).astype(np.float32)
+    scene.set_world_environment(core.Environment.from_pixels("sky", pixels))
+    scene.commit()
+    settings = core.Settings(method="WORLD_LIGHT", samples=1)
+    raised = core.Cancel()
+    raised.request()
+    with pytest.raises(core.Cancelled):
+        core.Session(scene, settings, cancel=raised)
+    session = core.Session(scene, settings, cancel=core.Cancel())  # what was broken off is made
+    assert session.wait(60.0)
+    assert not session.error
+
+
 def test_a_missing_image_is_named() -> None:
     with pytest.raises(RuntimeError, match="/nowhere/sky.hdr"):
         core.Environment.from_file("/nowhere/sky.hdr")

@@ -68,6 +68,26 @@ def test_values_of_texels():
     assert np.array_equal(core.Texture.missing("m").lookup(shifted[:1]), [[1, 0, 1, 1]])
 
 
+def test_a_raised_flag_ends_every_way_to_read(tmp_path):
+    pixels = np.full((40, 30, 4), 200, np.uint8)
+    file = str(tmp_path / "a.png")
+    data = png(file, pixels)
+    light = np.ones((40, 80, 3), np.float32)
+    raised = core.Cancel()
+    raised.request()
+    ways = (
+        lambda flag: core.Texture.from_file(file, cancel=flag),
+        lambda flag: core.Texture.from_bytes("a.png", data, cancel=flag),
+        lambda flag: core.Texture.from_pixels("a", pixels, cancel=flag),
+        lambda flag: core.Environment.from_file(file, cancel=flag),
+        lambda flag: core.Environment.from_pixels("a", light, cancel=flag),
+    )
+    for way in ways:
+        with pytest.raises(core.Cancelled):
+            way(raised)
+        assert way(core.Cancel()).width == way(None).width
+
+
 def test_bad_input_is_a_sentence(tmp_path):
     whole = png(tmp_path / "a.png", np.zeros((50, 50, 4), np.uint8))
     (tmp_path / "cut.png").write_bytes(whole[:60])

@@ -136,7 +136,7 @@ class Viewport:
     def _said(self, picture: Picture | None) -> str:
         statistics = self._worker.statistics
         lines = [statistics.stage if picture is None else self._of(picture)]
-        lines += filter(None, (self._worker.denoiser.error, self.notices.text))
+        lines += filter(None, (self._worker.view_denoiser.error, self.notices.text))
         return "\n".join(lines)
 
     def _of(self, picture: Picture) -> str:

@@ -105,7 +105,7 @@ class Worker:
         self.error = ""
         self.warnings: list[str] = []  # of the build
         self.statistics = Statistics()
-        self.denoiser = ViewDenoiser(self._show_picture)
+        self.view_denoiser = ViewDenoiser(self._show_picture)
         self._thread = threading.Thread(target=self._run, name="komorebi-viewport", daemon=True)
         self._thread.start()
 
@@ -208,7 +208,7 @@ class Worker:
                 self.error = str(error)
                 self._redraw()
         self._scene = self._built = self._request = None
-        self.denoiser.close()
+        self.view_denoiser.close()
         keys.close(id(self))
 
     def _end_build(self) -> None:
@@ -234,7 +234,7 @@ class Worker:
         self._built, self.warnings = (request.data, parts), native_scene.warnings(parts)
         keys.show(id(self), shown)
         self._scene, self._request = scene, request
-        self.denoiser.configure(request.denoising)
+        self.view_denoiser.configure(request.denoising)
         self.statistics = Statistics(scene.triangle_count, scene.byte_count)
 
     def _come_near(self, view: ViewCamera, threads: int) -> bool:
@@ -283,13 +283,19 @@ class Worker:
         gives_way: bool,
     ) -> bool:  # fmt: skip
         """Whether it came to its end."""
+        with self._condition:
+            self._wanted.gives_way = gives_way
+            if self._is_over():
+                return False
         coarse = coarse_view(self._core, view, pixel)
-        self.denoiser.begin()
+        self.view_denoiser.begin()
         session = self._core.Session(
             self._scene, self._core.Settings(**settings | {"region": coarse.region}), coarse.camera
         )
         with self._condition:
-            self._wanted.session, self._wanted.gives_way = session, gives_way
+            self._wanted.session = session
+            if self._is_over():  # since then
+                session.cancel()
         try:
             return self._follow(session, view, pixel, is_final)
         finally:
@@ -309,11 +315,12 @@ class Worker:
             if session.error:
                 raise RuntimeError(session.error)
             now = time.monotonic()
-            if over or (progress["sample"] > sample and now - shown >= REDRAW_SECONDS):
+            is_new = is_final and progress["sample"] > sample
+            if over or (is_new and now - shown >= REDRAW_SECONDS):
                 sample, shown = progress["sample"], now
                 self._publish(view, session, pixel, progress, is_final, over)
             if over:
-                return self.denoiser.is_finished(self._is_over)
+                return self.view_denoiser.is_finished(self._is_over)
             if self._wanted.paused and self._wanted.gives_way:
                 self._stand_still(session)
 
@@ -331,8 +338,8 @@ class Worker:
         statistics = self.statistics
         statistics.rays, statistics.seconds = progress["rays"], progress["elapsed"]
         sample = progress["sample"] if is_final else 0
-        denoises = is_final and self.denoiser.takes(sample, over)
-        if self.denoiser.has_shown and not denoises:
+        denoises = is_final and self.view_denoiser.takes(sample, over)
+        if self.view_denoiser.has_shown and not denoises:
             return
         request = self._request
         assert request is not None
@@ -344,8 +351,10 @@ class Worker:
             view, pixels, pixel, sample, request.settings["samples"], self._serial, request.exposure
         )
         if denoises:
-            self.denoiser.offer(picture, [session.read(name) for name in self.denoiser.guides])
-        if not self.denoiser.has_shown:
+            self.view_denoiser.offer(
+                picture, [session.read(name) for name in self.view_denoiser.guides]
+            )
+        if not self.view_denoiser.has_shown:
             self._show_picture(picture)
 
     def _show_picture(self, picture: Picture) -> None:

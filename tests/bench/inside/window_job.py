@@ -245,6 +245,10 @@ def start_lateness() -> None:
     bpy.app.timers.register(late)
 
 
+def late_count() -> int:
+    return len(lateness)
+
+
 def stop_lateness() -> list[float]:
     """Seconds by which a timer came later than it should have."""
     on["late"] = False

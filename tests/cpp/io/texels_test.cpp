@@ -122,6 +122,38 @@ TEST_F(TexelFiles, FilesInMemoryAreReadAlike) {
   }
 }
 
+TEST_F(TexelFiles, TallFilesAreReadInBandsAndMayBeCancelled) {
+  constexpr int kWidth = 5, kHeight = 333;
+  std::vector<float> values(4 * kWidth * kHeight);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 997) / 997.0f;
+  std::vector<float> upward;
+  for (int y = kHeight - 1; y >= 0; --y) {
+    const float* const row = values.data() + 4 * kWidth * y;
+    upward.insert(upward.end(), row, row + 4 * kWidth);
+  }
+  struct Layout {
+    const char* name;
+    int rows_per_strip, tile;
+  };
+  for (const Layout& layout :
+       {Layout{"lines.exr", 0, 0}, Layout{"tiles.exr", 0, 32}, Layout{"strips.tif", 48, 0},
+        Layout{"strip.tif", kHeight, 0}, Layout{"tiles.tif", 0, 16}}) {
+    const std::string file = path(layout.name);
+    OIIO::ImageSpec spec(kWidth, kHeight, 4, OIIO::TypeDesc::FLOAT);
+    if (layout.rows_per_strip > 0) spec.attribute("tiff:RowsPerStrip", layout.rows_per_strip);
+    spec.tile_width = spec.tile_height = layout.tile;
+    const auto output = OIIO::ImageOutput::create(file);
+    ASSERT_TRUE(output && output->open(file, spec) &&
+                output->write_image(OIIO::TypeDesc::FLOAT, values.data()) && output->close());
+    const Texels read = read_texels(file, {false, false});
+    ASSERT_EQ(read.byte_count(), upward.size() * sizeof(float));
+    EXPECT_EQ(std::memcmp(read.data.get(), upward.data(), read.byte_count()), 0) << layout.name;
+    Cancel cancel;
+    cancel.raise();
+    EXPECT_THROW(read_texels(file, {}, cancel), Cancelled);
+  }
+}
+
 TEST_F(TexelFiles, BadFilesAreASentence) {
   EXPECT_EQ(error_of(path("none.png")), "image \"" + path("none.png") + "\": no such file");
   EXPECT_NE(error_of(folder_.string()).find("is a folder"), std::string::npos);

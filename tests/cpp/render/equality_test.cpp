@@ -8,6 +8,7 @@
 #include "bvh/traverse.h"
 #include "render/one_ray.h"
 #include "render/sky_guide.h"
+#include "support/arcade.h"
 #include "support/busy_scenes.h"
 
 namespace komorebi::testing {
@@ -67,6 +68,12 @@ void expect_batches_as_one_ray(const std::shared_ptr<Scene>& scene, Settings set
 
 TEST_P(Equality, BatchesAgreeWithOneRayAfterAnother) {
   expect_batches_as_one_ray(telling_scene(), settings_);
+}
+
+TEST(EqualityOfPlaces, BatchesAgreeWithOneRayAfterAnother) {
+  Settings settings = small_settings(Method::kWorldLight);
+  settings.bounces = 3;
+  expect_batches_as_one_ray(arcade(160, 100), settings);
 }
 
 TEST_P(Equality, BatchesAgreeWithOneRayWhereLampsAreAllTheLight) {

@@ -49,6 +49,7 @@ class PointArrays {
     for (int c = 0; c < 3; ++c) {
       floats_[c].push_back(point.normal[c]);
       floats_[3 + c].push_back(point.geometric_normal[c]);
+      floats_[6 + c].push_back(leaving_origin(point)[c]);
     }
     words_[0].push_back(pixel_seed);
     words_[1].push_back(first_index);
@@ -62,6 +63,7 @@ class PointArrays {
     for (std::size_t c = 0; c < 3; ++c) {
       block.normal[c] = floats_[c].data();
       block.geometric_normal[c] = floats_[3 + c].data();
+      block.origin[c] = floats_[6 + c].data();
     }
     block.pixel_seed = words_[0].data();
     block.first_index = words_[1].data();
@@ -69,7 +71,7 @@ class PointArrays {
   }
 
  private:
-  std::vector<float> floats_[6];
+  std::vector<float> floats_[9];
   std::vector<std::uint32_t> words_[2];
 };
 

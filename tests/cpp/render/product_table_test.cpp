@@ -62,7 +62,7 @@ void expect_samples_follow_tables(const Environment& map, std::uint64_t seed) {
     std::vector<std::uint64_t> observed(expected.size(), 0);
     RandomBits random(seed + 1);
     for (int i = 0; i < kCount; ++i) {
-      const EnvironmentSample s = sample_product(e, p, normal, random.next());
+      const EnvironmentSample s = sample_product(e, p, normal, Vec3(0.0f), random.next());
       ASSERT_GT(s.pdf, 0.0f);
       const auto at = detail::locate(e, s.direction);
       ++observed[std::size_t{at.patch.row} * e.width + at.patch.column];
@@ -88,7 +88,7 @@ TEST(ProductTable, DensityIsThatOfTheDrawnPatch) {
   for (const Vec3& normal : some_normals(40, 7)) {
     const std::uint32_t bin = octahedral_cell(normal, p.bins);
     for (int i = 0; i < 500; ++i) {
-      const EnvironmentSample s = sample_product(e, p, normal, random.next());
+      const EnvironmentSample s = sample_product(e, p, normal, Vec3(0.0f), random.next());
       const auto at = detail::locate(e, s.direction);
       if (at.s < 1e-3f || at.s > 0.999f || at.z_fraction < 1e-3f || at.z_fraction > 0.999f)
         continue;
@@ -96,7 +96,7 @@ TEST(ProductTable, DensityIsThatOfTheDrawnPatch) {
                          detail::patch_probability(e, at.patch.row, at.patch.column) *
                          patch_share(e, p, bin, at.patch.row, at.patch.column);
       ASSERT_NEAR(double{s.pdf} / pdf, 1.0, 5e-3);
-      ASSERT_NEAR(product_pdf(e, p, normal, s.direction), pdf, 1e-6 * pdf);
+      ASSERT_NEAR(product_pdf(e, p, normal, Vec3(0.0f), s.direction), pdf, 1e-6 * pdf);
       const Vec3 radiance = environment_radiance(e, s.direction);
       ASSERT_NEAR(luminance(s.radiance), luminance(radiance), 2e-3f * (1.0f + luminance(radiance)));
     }
@@ -118,7 +118,7 @@ TEST(ProductTable, DensityOfDirectionsComesToOne) {
       for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
         const Vec2 u((static_cast<float>(i % kSide) + 0.5f) / kSide,
                      (static_cast<float>(i / kSide) + 0.5f) / kSide);
-        sum += double{product_pdf(e, p, normal, uniform_sphere(u))};
+        sum += double{product_pdf(e, p, normal, Vec3(0.0f), uniform_sphere(u))};
       }
       EXPECT_NEAR(sum * 4.0 * kPi / (kSide * kSide), 1.0, 0.02) << width;
     }
@@ -173,8 +173,8 @@ TEST(ProductTable, MeanIsTheIrradiance) {
       double sum = 0.0, squares = 0.0;
       constexpr int kCount = 1 << 16;
       for (std::uint32_t i = 0; i < kCount; ++i) {
-        const auto s =
-            sample_product(turned, map.product_table().view(), normal, sampler.bits_2d(8, i));
+        const auto s = sample_product(turned, map.product_table().view(), normal, Vec3(0.0f),
+                                      sampler.bits_2d(8, i));
         const double x = luminance(s.radiance) / double{s.pdf} *
                          std::max(0.0, glm::dot(Vec3d(s.direction), Vec3d(normal)));
         sum += x;
@@ -194,11 +194,14 @@ TEST(ProductTable, NoLightNoSample) {
   std::vector<float> texels(64 * 32 * 3, 0.0f);
   for (std::size_t i = 0; i < 3; ++i) texels[3 * (64 * 30 + 5) + i] = 1.0f;  // near the zenith
   const Environment map("spot", 64, 32, texels);
-  const auto down = sample_product(map.view(), map.product_table().view(), Vec3(0, 0, -1), {5, 7});
+  const auto down =
+      sample_product(map.view(), map.product_table().view(), Vec3(0, 0, -1), Vec3(0.0f), {5, 7});
   EXPECT_EQ(down.pdf, 0.0f);
-  EXPECT_EQ(product_pdf(map.view(), map.product_table().view(), Vec3(0, 0, -1), Vec3(0, 0, 1)),
+  EXPECT_EQ(product_pdf(map.view(), map.product_table().view(), Vec3(0, 0, -1), Vec3(0.0f),
+                        Vec3(0, 0, 1)),
             0.0f);
-  const auto up = sample_product(map.view(), map.product_table().view(), Vec3(0, 0, 1), {5, 7});
+  const auto up =
+      sample_product(map.view(), map.product_table().view(), Vec3(0, 0, 1), Vec3(0.0f), {5, 7});
   EXPECT_GT(up.pdf, 0.0f);
 }
 

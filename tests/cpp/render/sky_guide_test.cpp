@@ -40,15 +40,16 @@ RenderContext context_of(const Scene& scene, Method method, const FilterTable& f
   return make_context(scene, settings, filter.view());
 }
 
-void measure(const Scene& scene, Method method, SkyVisibility& seen) {
+SkyVisibility measured(const Scene& scene, Method method) {
   const FilterTable filter(PixelFilter::kBox, 1.0f);
   const RenderContext context = context_of(scene, method, filter);
-  ASSERT_TRUE(measure_sky_visibility(context, shared_pool(), Cancel(), seen));
+  SkySurvey survey;
+  EXPECT_TRUE(survey_sky(context, kWholeSurvey, shared_pool(), Cancel(), survey));
+  return SkyVisibility(survey);
 }
 
 TEST(SkyVisibility, KnowsTheWindow) {
-  SkyVisibility seen;
-  ASSERT_NO_FATAL_FAILURE(measure(*room_with_window(), Method::kWorldLight, seen));
+  const SkyVisibility seen = measured(*room_with_window(), Method::kWorldLight);
   const std::uint32_t up = SkyVisibility::side({0, 0, 1}), inwards = SkyVisibility::side({1, 0, 0});
   const Vec3 through = glm::normalize(Vec3(2, -0.1, 1.2));
   EXPECT_GT(seen.share(up, through), 0.15f);
@@ -59,8 +60,7 @@ TEST(SkyVisibility, KnowsTheWindow) {
 }
 
 TEST(SkyVisibility, OpenGroundSeesAll) {
-  SkyVisibility seen;
-  ASSERT_NO_FATAL_FAILURE(measure(*open_ground(), Method::kAmbientOcclusion, seen));
+  const SkyVisibility seen = measured(*open_ground(), Method::kAmbientOcclusion);
   const Vec3 up(0, 0, 1);
   EXPECT_GT(seen.share(SkyVisibility::side(up), up), 0.9f);
 }
