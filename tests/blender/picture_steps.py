@@ -69,7 +69,9 @@ def viewport():
     properties_tab("RENDER")
     yield 0.3
     through_camera()
-    w.space().overlay.show_cursor = False
+    overlay = w.space().overlay
+    overlay.show_cursor = overlay.show_floor = overlay.show_relationship_lines = False
+    overlay.show_axis_x = overlay.show_axis_y = overlay.show_extras = False
     for obj in bpy.context.selected_objects:
         obj.select_set(False)
     yield from w.finished(LIMIT)
