@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import weakref
 from typing import Any
 
 import bpy
@@ -75,6 +76,9 @@ class KomorebiRenderEngine(bpy.types.RenderEngine):
             from .viewport.viewport import Viewport
 
             viewport = self.viewport = Viewport(self)
+            # Not left to __del__ alone: from what Blender has freed first, and its other threads
+            # have still held, nothing can be asked any more.
+            weakref.finalize(self, viewport.close).atexit = False
         return viewport
 
     def update_render_passes(self, scene: Any = None, renderlayer: Any = None) -> None:

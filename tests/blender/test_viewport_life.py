@@ -4,7 +4,7 @@ or thread lost, and the right picture afterwards."""
 import test_window
 
 BEGIN = """
-import gc, os, threading
+import gc, os, threading, time
 import bmesh, bpy, numpy as np
 import support
 import view_steps as v
@@ -287,4 +287,28 @@ def test_a_view_that_cannot_be_rendered_takes_nothing_with_it(folder):
     yield 0.1
     assert (yield from v.expect_all("as before")) == 1
     assert not w.viewports()[-1].error
+""")  # fmt: skip
+
+
+def test_an_engine_that_is_still_held_when_blender_frees_it(folder):
+    """As threads do that tell it to draw: what it renders by ends with it all the same."""
+    run(folder, """
+    yield from rendered()
+    scene.komorebi.preview_samples = 0  # for ever
+    scene.update_tag()
+    yield 0.3
+    engine = w.viewports()[0]._worker._redraw.__closure__[0].cell_contents()
+    w.space().shading.type = "SOLID"
+    yield 0.3
+    assert len(w.viewports()) == 1
+    del engine
+    yield from closed()
+    w.space().shading.type = "RENDERED"
+    yield 0.2
+    engine = w.viewports()[0]._worker._redraw.__closure__[0].cell_contents()
+    thread = threading.Thread(target=lambda held: time.sleep(2.0), args=(engine,))
+    thread.start()
+    del engine
+    w.space().shading.type = "SOLID"  # the last to hold it is another thread
+    yield from closed()
 """)  # fmt: skip

@@ -139,12 +139,15 @@ def test_a_clipping_region_is_nothing_to_rendered_views(folder):
     yield from rendered()
     yield from w.finished()
     before = v.shown(v.views()[0])
+    w.space().shading.type = "SOLID"  # where newer releases let it be chosen
+    yield 0.2
     with w.override():
         bpy.ops.view3d.clip_border(xmin=300, xmax=560, ymin=150, ymax=400)
+    w.space().shading.type = "RENDERED"
     yield 0.2
     assert w.space().region_3d.use_clip_planes
     yield from v.expect_all("clipped")
-    assert np.array_equal(v.shown(v.views()[0]), before)
+    assert np.abs(v.shown(v.views()[0]) - before).max() < 0.01
     bpy.data.objects["Suzanne"].location.x = 1.0
     yield 0.1
     yield from v.expect_all("clipped and edited")
@@ -167,7 +170,8 @@ def test_render_region_and_local_view(folder):
     part = v.shown(v.views()[0])
     inside = np.s_[140:400, 245:715]
     assert np.abs(part[inside] - whole[inside]).max() < 0.01  # a screen's last digit
-    assert np.abs(part - whole)[:100, :200].max() > 0.01  # outside is Blender's own background
+    part[135:405, 240:720] = whole[135:405, 240:720]
+    assert np.abs(part - whole).max() > 0.3  # outside is Blender's own background
     space.use_render_border = False
     for obj in bpy.data.objects:
         obj.select_set(obj.name == "Suzanne")

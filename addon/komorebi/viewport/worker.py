@@ -164,7 +164,8 @@ class Worker:
             self._condition.notify_all()
 
     def stop(self) -> None:
-        """Ends the thread; back within some milliseconds."""
+        """Ends the thread; back within some milliseconds. May be called again, and by a thread that
+        has held the engine last, which waits for none: the worker may be waiting for it."""
         with self._condition:
             wanted = self._wanted
             wanted.stopped = wanted.changed = True
@@ -173,7 +174,7 @@ class Worker:
             if wanted.session is not None:
                 wanted.session.cancel()
             self._condition.notify_all()
-        if threading.current_thread() is not self._thread:
+        if threading.current_thread() is threading.main_thread():
             self._thread.join()
 
     # The thread.
