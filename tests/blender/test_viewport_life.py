@@ -91,9 +91,9 @@ def test_areas_that_split_close_and_fill_the_window(folder):
                     bpy.ops.screen.area_close()
             yield 0.02
 
-    yield from turns(10)
+    yield from turns(6)
     before = yield from closed()
-    yield from turns(30)
+    yield from turns(14)
     after = yield from closed()
     print("MEMORY", before, after, flush=True)
     assert after[0] - before[0] < 20e6 and after[1] <= before[1], (before, after)
