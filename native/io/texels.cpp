@@ -98,7 +98,7 @@ void widen(T* texels, std::size_t count, std::size_t channels, bool associate, b
 
 /// Reads all scanlines or tiles band by band, as the library's read_image does, but in bands of
 /// which each takes little time. `row` is negative, from the top one on.
-bool read_bands(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+bool read_bands(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
                 std::byte* top, OIIO::stride_t row, const Cancel& cancel) {
   const int strip = std::clamp(spec.get_int_attribute("tiff:RowsPerStrip", 1), 1, spec.height);
   const int band = spec.tile_height > 1 ? spec.tile_height : (kRows + strip - 1) / strip * strip;
