@@ -36,23 +36,21 @@ def face_offsets(mesh: Any) -> tuple[IntArray, IntArray | None]:
     faces, corners = len(mesh.polygons), len(mesh.loops)
     if GENERIC_ATTRIBUTES and corners == 3 * faces:  # triangles all, one after the other
         return np.arange(0, corners + 3, 3, dtype=np.int32), None
+    offsets = np.empty(faces + 1, np.int32)
+    offsets[-1] = corners
     known = None if GENERIC_ATTRIBUTES else structures.faces(mesh)
     if known is not None:
-        offsets = np.append(known["start"], np.int32(corners))
-        if offsets[0] == 0 and np.array_equal(offsets[:-1] + known["total"], offsets[1:]):
+        offsets[:-1], totals = known["start"], known["total"]
+    else:
+        mesh.polygons.foreach_get("loop_start", offsets.view(np.uint32)[:-1])
+        if GENERIC_ATTRIBUTES:  # faces lie one after the other
             return offsets, None
-        return face_order(known["start"].copy(), known["total"].copy())
-    starts = np.empty(faces + 1, np.uint32)
-    mesh.polygons.foreach_get("loop_start", starts[:-1])
-    starts[-1] = corners
-    offsets = starts.view(np.int32)
-    if GENERIC_ATTRIBUTES:  # faces lie one after the other
+        unsigned = np.empty(faces, np.uint32)
+        mesh.polygons.foreach_get("loop_total", unsigned)
+        totals = unsigned.view(np.int32)
+    if offsets[0] == 0 and np.array_equal(offsets[:-1] + totals, offsets[1:]):
         return offsets, None
-    totals = np.empty(faces, np.uint32)
-    mesh.polygons.foreach_get("loop_total", totals)
-    if starts[0] == 0 and np.array_equal(starts[:-1] + totals, starts[1:]):
-        return offsets, None
-    return face_order(offsets[:-1], totals.view(np.int32))
+    return face_order(offsets[:-1], totals)
 
 
 def face_order(starts: IntArray, totals: IntArray) -> tuple[IntArray, IntArray]:
