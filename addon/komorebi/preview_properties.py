@@ -58,7 +58,7 @@ class PreviewSettings:
         name="Start Resolution",
         description="Pixels of the viewport's first picture along its longer side, at most; finer "
         "ones follow",
-        default=256, min=8, max=16384, subtype="PIXEL",
+        default=128, min=8, max=16384, subtype="PIXEL",
     )  # fmt: skip
     preview_pause: BoolProperty(
         name="Pause Preview", description="The rendered viewport stands still", default=False

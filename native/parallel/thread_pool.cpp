@@ -29,11 +29,12 @@ void stay_awake_until(const Condition& is_met) {
 
 }  // namespace
 
-ThreadPool::ThreadPool(unsigned threads) : size_(choose_size(threads)), places_(size_) {
+ThreadPool::ThreadPool(unsigned threads, Priority priority)
+    : size_(choose_size(threads)), places_(size_) {
   threads_.reserve(size_ - 1);
   try {
     for (unsigned worker = 1; worker < size_; ++worker) {
-      threads_.emplace_back([this, worker] { work(worker); });
+      threads_.emplace_back([this, worker, priority] { work(worker, priority); });
     }
   } catch (const std::system_error&) {
     // The system gives no more threads: work with those that started.
@@ -59,7 +60,8 @@ void ThreadPool::call(FunctionRef<void(unsigned)> body, unsigned worker) {
   }
 }
 
-void ThreadPool::work(unsigned worker) {
+void ThreadPool::work(unsigned worker, Priority priority) {
+  if (priority == Priority::kLow) lower_priority();
   const DefaultFloatEnvironment float_environment;
   inside_body = true;
   unsigned seen = 0;

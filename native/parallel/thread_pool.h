@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "parallel/function_ref.h"
+#include "parallel/thread_priority.h"
 #include "parallel/worker_places.h"
 
 namespace komorebi {
@@ -19,7 +20,8 @@ namespace komorebi {
 class ThreadPool {
  public:
   /// `threads` counts the caller: a pool of 1 spawns none. 0 means one per hardware thread.
-  explicit ThreadPool(unsigned threads);
+  /// `priority` is that of the spawned ones.
+  explicit ThreadPool(unsigned threads, Priority priority = Priority::kNormal);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
@@ -38,7 +40,7 @@ class ThreadPool {
                       FunctionRef<void(std::size_t, std::size_t)> body);
 
  private:
-  void work(unsigned worker);
+  void work(unsigned worker, Priority priority);
   void call(FunctionRef<void(unsigned)> body, unsigned worker);
 
   unsigned size_;

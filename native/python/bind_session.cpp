@@ -61,7 +61,7 @@ std::shared_ptr<Settings> make_settings(
     bool use_progressive, bool film_transparent, float mist_start, float mist_depth,
     const std::string& mist_falloff, std::uint32_t threads, std::uint32_t tile_size,
     const std::optional<Region>& region, const std::vector<std::string>& passes,
-    bool guides_light) {
+    bool guides_light, bool has_low_priority) {
   auto s = std::make_shared<Settings>();
   s->method = parse("method", method, kMethods);
   s->samples = samples;
@@ -99,6 +99,7 @@ std::shared_ptr<Settings> make_settings(
   if (region) s->region = {(*region)[0], (*region)[1], (*region)[2], (*region)[3]};
   s->passes = passes;
   s->guides_light = guides_light;
+  s->has_low_priority = has_low_priority;
   return s;
 }
 
@@ -192,10 +193,12 @@ void bind_settings(py::module_& module) {
            py::arg("threads") = d.threads, py::arg("tile_size") = d.tile_size,
            py::arg("region") = std::optional<Region>(), py::arg("passes") = d.passes,
            py::arg("guides_light") = d.guides_light,
+           py::arg("has_low_priority") = d.has_low_priority,
            "region: (x_min, y_min, x_max, y_max) in full-frame pixels, half open, row 0 at the "
            "bottom; None is the whole frame. threads 0: one a core. guides_light: whether the "
-           "parts of the sky that surfaces see are measured first. ValueError for a name that is "
-           "not known; ranges are checked when a Session starts.");
+           "parts of the sky that surfaces see are measured first. has_low_priority: whether its "
+           "threads let others come first. ValueError for a name that is not known; ranges are "
+           "checked when a Session starts.");
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ Session::Session(std::shared_ptr<const Scene> scene, const Settings& settings,
       context_(make_context(*scene_, settings_, filter_.view(), before)),
       light_samples_(context_.light_samples),
       rule_(settings_, context_.light_samples),
-      pool_(settings_.threads),
+      pool_(settings_.threads, settings_.has_low_priority ? Priority::kLow : Priority::kNormal),
       film_(film_region(camera_, settings_), settings_, max_radiance(*scene_, settings_),
             scene_->has_catchers(), scene_->tables().max_value()),
       schedule_(make_tiles(film_.region(), settings_.tile_size, pool_.size()), settings_, rule_) {
@@ -91,6 +91,7 @@ void Session::resume() {
 }
 
 void Session::run() {
+  if (settings_.has_low_priority) lower_priority();
   std::string error;
   try {
     prepare();

@@ -70,6 +70,7 @@ struct Settings {
   float mist_depth = 25.0f;  ///< metres from there to full mist
   MistFalloff mist_falloff = MistFalloff::kQuadratic;
   std::uint32_t threads = 0;     ///< 0: one per core
+  bool has_low_priority = false;  ///< its threads let those come first that draw what they render
   std::uint32_t tile_size = 64;  ///< pixels
   bool has_region = false;       ///< false: the whole frame
   Rect region;

@@ -2,20 +2,35 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
+# The first picture is the finest one that is expected to come within this time, or the coarsest.
+FIRST_SECONDS = 0.01
+# Edits that come faster one after the other than this are a motion: a turning view, playback. Then
+# Blender has the processors for drawing, and nothing finer is begun before there has been none for
+# REST_SECONDS.
+MOTION_SECONDS, REST_SECONDS = 0.25, 0.08
 # The next picture is the finest one that is expected to come within this time.
 STEP_SECONDS = 0.1
+# Between two pictures that differ by their samples alone. Each costs a redraw, and shows less that
+# is new the later it comes.
+FIRST_REDRAW_SECONDS, LAST_REDRAW_SECONDS, REDRAW_SHARE = 0.1, 1.0, 0.25
 # Of pictures that are not the last: light rays of each camera ray, while pixels are wide and when
 # they are not. So the first picture at full resolution is there in a third of the time.
 WIDE_LIGHT_SAMPLES, FINE_LIGHT_SAMPLES = 2, 1
 
 
-def first_pixel(width: int, height: int, start_resolution: int, final: int) -> int:
-    """How wide the first picture's pixels are: its longer side has no more than `start_resolution`
-    of them, unless the final picture has fewer."""
+def first_pixel(
+    width: int, height: int, start_resolution: int, final: int, cost: float = math.inf
+) -> int:
+    """How wide the first picture's pixels are: its longer side has `start_resolution` of them or
+    less, or more where that is quick. `cost` is what one of them takes, in seconds."""
     pixel = final
-    while max(width, height) > start_resolution * pixel:
+    while (
+        max(width, height) > start_resolution * pixel
+        and width * height * cost > FIRST_SECONDS * pixel**2
+    ):
         pixel *= 2
     return pixel
 
@@ -26,6 +41,11 @@ def next_pixel(pixel: int, seconds: float, final: int) -> int:
     while finer > final and 4.0 * seconds * (pixel / finer) ** 2 <= STEP_SECONDS:
         finer //= 2
     return max(finer, final)
+
+
+def redraw_seconds(elapsed: float) -> float:
+    """How long a picture stays, `elapsed` seconds after its first sample was begun."""
+    return min(max(FIRST_REDRAW_SECONDS, REDRAW_SHARE * elapsed), LAST_REDRAW_SECONDS)
 
 
 def quick_settings(settings: dict[str, Any], is_wide: bool) -> dict[str, Any]:

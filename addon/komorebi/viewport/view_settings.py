@@ -23,6 +23,7 @@ def preview_settings(scene: Any) -> dict[str, Any]:
         "sample_offset": 0,
         "time_limit": 0.0,
         "use_progressive": True,
+        "has_low_priority": True,  # Blender's window comes first
         "fast_gi_bounces": settings.ao_bounces,
         "use_adaptive_sampling": settings.use_preview_adaptive_sampling,
         "adaptive_threshold": settings.preview_adaptive_threshold,

@@ -8,6 +8,7 @@ come faster than pictures, as in playback, would leave none.
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections.abc import Callable
@@ -20,12 +21,13 @@ from .. import native_scene
 from ..scene_data import FloatArray, SceneData
 from . import keys, studio_blur
 from .denoising import DenoisingRequest, ViewDenoiser
-from .refinement import first_pixel, is_quick, next_pixel, quick_settings
+from .refinement import (
+    MOTION_SECONDS, REST_SECONDS, first_pixel, is_quick, next_pixel, quick_settings, redraw_seconds,
+)  # fmt: skip
 from .texels import texels_of
 from .view_camera import ViewCamera, coarse_view
 
 POLL_SECONDS = 0.01
-REDRAW_SECONDS = 0.1  # between two pictures that differ by their samples alone
 END_SECONDS = 5.0  # what a session may take to end: some milliseconds as a rule
 
 
@@ -41,7 +43,7 @@ class SceneRequest:
     denoising: DenoisingRequest | None = None
     exposure: float = 1.0
     pixel_size: int = 1  # how wide the final picture's pixels are on the screen
-    start_resolution: int = 256  # of the first picture's longer side, in its pixels, at most
+    start_resolution: int = 128  # of the first picture's longer side, in its pixels, at most
 
 
 @dataclass(slots=True)
@@ -55,7 +57,7 @@ class Picture:
     samples: int
     serial: int = 0  # of the request that it answers
     exposure: float = 1.0
-    texels: FloatArray | None = None  # as it goes onto the screen [height, width, 4]
+    texels: FloatArray | None = None  # as it goes onto the screen [rows, columns, 4]
     is_denoised: bool = False
 
 
@@ -71,6 +73,8 @@ class _Wanted:
     cancel: Any = None  # of the build that is on
     is_for_view: bool = False  # the build that is on is of no use to another view
     serial: int = 0  # of the newest scene or view
+    since: float = -math.inf  # when it came
+    is_motion: bool = False  # it came soon after the one before
     session: Any = None  # that is on
     gives_way: bool = False  # it ends when something else is wanted
     owes_picture: bool = False  # a build was given up, and no picture has come since
@@ -100,6 +104,7 @@ class Worker:
         self._built: tuple[SceneData, native_scene.Parts] | None = None  # what it is made of
         self._request: SceneRequest | None = None  # that it was built for
         self._serial = 0  # of what is on
+        self._cost = math.inf  # seconds that a pixel of the last first picture took
         self._is_idle = False
         self.picture: Picture | None = None
         self.error = ""
@@ -134,6 +139,9 @@ class Worker:
             return True
 
     def _change(self) -> None:
+        now = time.monotonic()
+        self._wanted.is_motion = now - self._wanted.since < MOTION_SECONDS
+        self._wanted.since = now
         self._wanted.changed = True
         self._wanted.serial += 1
         if self._wanted.gives_way and self._wanted.session is not None:
@@ -266,7 +274,7 @@ class Worker:
         """Picture after picture until the last sample, or until something else is wanted."""
         self.error = ""
         final, settings = request.pixel_size, request.settings
-        pixel = first_pixel(view.width, view.height, request.start_resolution, final)
+        pixel = first_pixel(view.width, view.height, request.start_resolution, final, self._cost)
         is_first = True
         while pixel > final or is_first or not is_quick(settings):
             start = time.monotonic()
@@ -275,9 +283,23 @@ class Worker:
                 return
             if pixel == final:
                 break
-            pixel, is_first = next_pixel(pixel, time.monotonic() - start, final), False
+            seconds = time.monotonic() - start
+            if is_first:
+                self._cost = seconds * pixel**2 / (view.width * view.height)
+                if not self._rest():
+                    return
+            pixel, is_first = next_pixel(pixel, seconds, final), False
         if self._come_near(view, settings["threads"]):
             self._render_at(view, final, settings, is_final=True, gives_way=True)
+
+    def _rest(self) -> bool:
+        """After the first picture of a motion; False when something else is wanted."""
+        with self._condition:
+            wanted = self._wanted
+            wanted.gives_way = True
+            if wanted.is_motion:
+                self._condition.wait_for(self._is_over, REST_SECONDS)
+            return not self._is_over()
 
     def _render_at(
         self, view: ViewCamera, pixel: int, settings: dict[str, Any], is_final: bool,
@@ -307,7 +329,7 @@ class Worker:
 
     def _follow(self, session: Any, view: ViewCamera, pixel: int, is_final: bool) -> bool:
         """Shows what comes of a session until it is over (True) or is to end (False)."""
-        sample, shown = 0, 0.0
+        sample, shown, start = 0, 0.0, time.monotonic()
         while True:
             over = session.wait(POLL_SECONDS)
             if self._is_over():
@@ -317,7 +339,7 @@ class Worker:
                 raise RuntimeError(session.error)
             now = time.monotonic()
             is_new = is_final and progress["sample"] > sample
-            if over or (is_new and now - shown >= REDRAW_SECONDS):
+            if over or (is_new and now - shown >= redraw_seconds(now - start)):
                 sample, shown = progress["sample"], now
                 self._publish(view, session, pixel, progress, is_final, over)
             if over:
@@ -359,7 +381,7 @@ class Worker:
             self._show_picture(picture)
 
     def _show_picture(self, picture: Picture) -> None:
-        picture.texels = texels_of(picture.pixels, picture.view, picture.pixel, picture.exposure)
+        picture.texels = texels_of(picture.pixels, picture.exposure)
         with self._condition:
             self.picture = picture
             self._wanted.owes_picture = False
