@@ -33,9 +33,10 @@ PASSES = {
     "INSTANCE_INDEX": "Instance Index",
 }  # fmt: skip
 
-# How long a redraw waits for the picture of a new view or scene, once: so that a view that turns is
-# drawn as it is, and not once more as it was. Longer ones come when they are there.
-WAIT_SECONDS = 0.03
+# How long a redraw waits, once, for the picture of a new view, or scene, for which trees may have
+# to be built: so that what is drawn is what there is, not once more what there was, which takes as
+# long to draw. Longer ones come when they are there.
+VIEW_SECONDS, SCENE_SECONDS = 0.03, 0.1
 
 
 class Viewport:
@@ -121,9 +122,10 @@ class Viewport:
         if context.space_data.shading.komorebi.render_pass != self._render_pass:
             self.update(engine, context, depsgraph)  # Blender tells nobody
         self._worker.pause(context.scene.komorebi.preview_pause)
-        if self._worker.look(view) or self._awaits:
+        is_new_view = self._worker.look(view)
+        if is_new_view or self._awaits:
+            self._worker.await_picture(SCENE_SECONDS if self._awaits else VIEW_SECONDS)
             self._awaits = False
-            self._worker.await_picture(WAIT_SECONDS)
         picture = self._worker.picture
         error = self.error
         if picture is not None and not error:
