@@ -60,8 +60,8 @@ std::shared_ptr<Settings> make_settings(
     const std::string& environment_sampling, const std::string& pixel_filter, float filter_width,
     bool use_progressive, bool film_transparent, float mist_start, float mist_depth,
     const std::string& mist_falloff, std::uint32_t threads, std::uint32_t tile_size,
-    const std::optional<Region>& region, const std::vector<std::string>& passes,
-    bool guides_light, bool has_low_priority) {
+    const std::optional<Region>& region, const std::vector<std::string>& passes, bool guides_light,
+    bool has_low_priority, std::uint32_t samples_per_pass) {
   auto s = std::make_shared<Settings>();
   s->method = parse("method", method, kMethods);
   s->samples = samples;
@@ -100,6 +100,7 @@ std::shared_ptr<Settings> make_settings(
   s->passes = passes;
   s->guides_light = guides_light;
   s->has_low_priority = has_low_priority;
+  s->samples_per_pass = samples_per_pass;
   return s;
 }
 
@@ -194,10 +195,12 @@ void bind_settings(py::module_& module) {
            py::arg("region") = std::optional<Region>(), py::arg("passes") = d.passes,
            py::arg("guides_light") = d.guides_light,
            py::arg("has_low_priority") = d.has_low_priority,
+           py::arg("samples_per_pass") = d.samples_per_pass,
            "region: (x_min, y_min, x_max, y_max) in full-frame pixels, half open, row 0 at the "
            "bottom; None is the whole frame. threads 0: one a core. guides_light: whether the "
            "parts of the sky that surfaces see are measured first. has_low_priority: whether its "
-           "threads let others come first. ValueError for a name that is not known; ranges are "
+           "threads let others come first. samples_per_pass: of a pixel before the next one's. "
+           "ValueError for a name that is not known; ranges are "
            "checked when a Session starts.");
 }
 

@@ -12,6 +12,12 @@ bool in_reach(const RenderContext& context) {
   return 3 * std::uint64_t{e.width} * e.height < (1u << 31);
 }
 
+/// Whether rays are drawn by the cosine alone, for light that is the same from everywhere.
+bool is_even(const RenderContext& context) {
+  return context.method == Method::kWorldLight && context.sky.width == 0 &&
+         context.cosine_share == 1.0f;
+}
+
 Vec3 entry(const float* const (&columns)[3], std::size_t i) {
   return Vec3(columns[0][i], columns[1][i], columns[2][i]);
 }
@@ -55,6 +61,8 @@ void sample_lights(const RenderContext& context, const LightBlock& block) {
   } else if (kernel != nullptr && context.method == Method::kAmbientOcclusion &&
              context.ao_sampling == AoSampling::kCosine) {
     kernel->ambient(context, block);
+  } else if (kernel != nullptr && is_even(context)) {
+    kernel->even(context, block);
   } else {
     sample_lights_scalar(context, block);
   }

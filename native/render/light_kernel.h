@@ -36,6 +36,7 @@ void place_bins(const RenderContext& context, const Columns& normal, const Colum
 /// in every bit.
 struct LightKernel {
   void (*ambient)(const RenderContext& context, const LightBlock& block);
+  void (*even)(const RenderContext& context, const LightBlock& block);
   void (*product)(const RenderContext& context, const LightBlock& block);
 };
 

@@ -49,6 +49,26 @@ void ambient(const RenderContext& context, const LightBlock& block) {
       });
 }
 
+/// Under a sky that is the same everywhere: what the cosine and its density leave of each other is
+/// exactly 1 wherever the density is above 0.
+void even(const RenderContext& context, const LightBlock& block) {
+  const Vec3 light = context.albedo * context.sky.constant;
+  for_each_ray(
+      context, block, [&](std::size_t p) HWY_ATTR { return FrameLanes(load(block.normal, p)); },
+      [&](const FrameLanes& frame, std::size_t p, Uint x, Uint y, std::size_t to) HWY_ATTR {
+        const Float zero = f32(0.0f);
+        const Vec3Lanes direction = frame.to_world(
+            cosine_hemisphere_disk_lanes(to_unit_float_lanes(x), to_unit_float_lanes(y)));
+        const Float cosine = dot(direction, load(block.normal, p));
+        const auto lit = hn::And(hn::And(hn::Gt(cosine, zero), hn::Gt(cosine * f32(kInvPi), zero)),
+                                 hn::Gt(dot(direction, load(block.geometric_normal, p)), zero));
+        store(direction, block.direction, to);
+        store({hn::IfThenElseZero(lit, f32(light.x)), hn::IfThenElseZero(lit, f32(light.y)),
+               hn::IfThenElseZero(lit, f32(light.z))},
+              block.contribution, to);
+      });
+}
+
 /// product_bin, one lane after another: what each looks up lies where its neighbours' does.
 HWY_INLINE Uint bins_at_places(const RenderContext& context, const LightBlock& block, std::size_t p,
                                Uint bin) {
@@ -103,7 +123,7 @@ void product(const RenderContext& context, const LightBlock& block) {
 }  // namespace
 
 extern const LightKernel kLightKernel;
-constexpr LightKernel kLightKernel = {&ambient, &product};
+constexpr LightKernel kLightKernel = {&ambient, &even, &product};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace komorebi

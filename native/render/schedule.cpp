@@ -4,15 +4,11 @@
 #include <bit>
 
 namespace komorebi {
-namespace {
-
-constexpr std::uint32_t kMaxSamplesPerPass = 16;
-
-}  // namespace
 
 Schedule::Schedule(std::vector<Rect> tiles, const Settings& settings, const AdaptiveRule& rule)
     : rule_(rule),
       samples_(settings.samples),
+      samples_per_pass_(settings.samples_per_pass),
       sample_offset_(settings.sample_offset),
       time_limit_(settings.time_limit),
       by_pass_(settings.use_progressive || settings.time_limit > 0.0f),
@@ -40,7 +36,7 @@ bool Schedule::decision_after(const Pass& pass) const {
 
 /// Samples of the pass that begins after `done`: it crosses no power of two, where cells may stop.
 std::uint32_t Schedule::next_count(std::uint32_t done) const {
-  const std::uint32_t doubling = std::min(std::max(done, 1u), kMaxSamplesPerPass);
+  const std::uint32_t doubling = std::min(std::max(done, 1u), samples_per_pass_);
   return std::min({doubling, std::bit_ceil(done + 1) - done, samples_ - done});
 }
 

@@ -32,9 +32,9 @@ struct ScheduleState {
   std::uint64_t pixel_samples = 0;
 };
 
-/// Gives out the work of a render: passes over all tiles (1 sample, then doubling, at most 16 at a
-/// time, so that threads end together), so that a cancelled picture is whole and only noisier; or,
-/// when not progressive, tile after tile to its end.
+/// Gives out the work of a render: passes over all tiles (1 sample, then doubling, at most
+/// samples_per_pass at a time, so that threads end together), so that a cancelled picture is whole
+/// and only noisier; or, when not progressive, tile after tile to its end.
 ///
 /// A pass of a tile waits for another only where a decision about its cells lies between them, and
 /// then only for those of the same tile. So threads never meet at the end of a pass.
@@ -89,7 +89,7 @@ class Schedule {
   void retire(const Tile& tile);
 
   const AdaptiveRule rule_;
-  const std::uint32_t samples_, sample_offset_;
+  const std::uint32_t samples_, samples_per_pass_, sample_offset_;
   const double time_limit_;
   const bool by_pass_;  // else tile by tile
 

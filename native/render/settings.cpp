@@ -31,6 +31,7 @@ void check_settings(const Settings& s, std::uint32_t width, std::uint32_t height
   require(s.samples >= 1 && s.samples <= kMaxSamples, "samples must be 1 to 16777216");
   require(s.sample_offset <= kMaxSamples - s.samples,
           "sample_offset + samples must not exceed 16777216");
+  require(s.samples_per_pass >= 1, "samples_per_pass must be at least 1");
   require(s.light_samples <= kMaxLightSamples, "light_samples must be 0 (automatic) to 4096");
   require(std::uint64_t{s.sample_offset + s.samples} * s.light_samples <= 0xffffffffu,
           "(sample_offset + samples) times light_samples must stay below 2^32");

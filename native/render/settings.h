@@ -65,14 +65,16 @@ struct Settings {
   PixelFilter pixel_filter = PixelFilter::kBlackmanHarris;
   float filter_width = 1.5f;    ///< pixels
   bool use_progressive = true;  ///< refine the whole frame, not one tile to its end
+  /// Of a pixel, at most, before the next ones; what is made of more takes a little less time.
+  std::uint32_t samples_per_pass = 16;
   bool film_transparent = false;
   float mist_start = 5.0f;   ///< metres from the camera
   float mist_depth = 25.0f;  ///< metres from there to full mist
   MistFalloff mist_falloff = MistFalloff::kQuadratic;
-  std::uint32_t threads = 0;     ///< 0: one per core
+  std::uint32_t threads = 0;      ///< 0: one per core
   bool has_low_priority = false;  ///< its threads let those come first that draw what they render
-  std::uint32_t tile_size = 64;  ///< pixels
-  bool has_region = false;       ///< false: the whole frame
+  std::uint32_t tile_size = 64;   ///< pixels
+  bool has_region = false;        ///< false: the whole frame
   Rect region;
   std::vector<std::string> passes{"Combined", "Depth", "Normal"};
 };

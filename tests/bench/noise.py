@@ -25,13 +25,13 @@ WARM_UP = (2, 9)  # samples and seed of the picture that is not counted
 KINDS = ("-textured", "-bounces", "-sky")  # what is measured when no scene is named
 
 
-def measure_scene(scene: Scene, samples: int = SAMPLES) -> Row:
+def measure_scene(scene: Scene, samples: int, size: tuple[int, int]) -> Row:
     """Variance of a channel and seconds of a picture, for both engines."""
-    row: Row = {"scene": scene.name, "samples": samples}
+    row: Row = {"scene": scene.name, "samples": samples, "width": size[0], "height": size[1]}
     for engine in ("CYCLES", "KOMOREBI"):
         say(f"noise: {scene.name}: {engine}")
         runs = [WARM_UP, *((samples, seed) for seed in SEEDS)]
-        done = render.render(scene, engine, render.small_size(scene), runs, True, {})
+        done = render.render(scene, engine, size, runs, True, {})
         pictures = np.stack(done.pictures[1:]).astype(np.float64)
         row[f"{engine.lower()}_variance"] = float(pictures.var(axis=0, ddof=1).mean())
         row[f"{engine.lower()}_seconds"] = median(done.seconds[1:])
@@ -45,7 +45,8 @@ def measure(options: argparse.Namespace) -> list[Row]:
     rows: list[Row] = []
     for scene in chosen[:1] if options.quick else chosen:
         try:
-            rows.append(measure_scene(scene, 2 if options.quick else SAMPLES))
+            size = options.size or render.small_size(scene)
+            rows.append(measure_scene(scene, 2 if options.quick else SAMPLES, size))
         except meshes.Missing as missing:
             say(f"noise: {scene.name} is left out: {missing}")
     return rows
@@ -55,14 +56,15 @@ def tables(rows: list[Row]) -> list[Table]:
     """One line a scene."""
     says = {scene.name: scene.says for scene in SCENES}
     table = Table(
-        "Noise: 16 samples a pixel, 320 × 180, and how many times as fast as Cycles at equal error",
-        ["scene", "Cycles s", "Komorebi s", "faster a picture", "variance", "equal error"],
+        "Noise: 16 samples a pixel, and how many times as fast as Cycles at equal error",
+        ["scene", "size", "Cycles s", "Komorebi s", "faster a picture", "variance", "equal error"],
     )
     for row in rows:
         faster = row["cycles_seconds"] / row["komorebi_seconds"]
         quieter = row["cycles_variance"] / row["komorebi_variance"]
         table.add(
-            says[row["scene"]], figure(row["cycles_seconds"]), figure(row["komorebi_seconds"]),
+            says[row["scene"]], f"{row['width']} × {row['height']}",
+            figure(row["cycles_seconds"]), figure(row["komorebi_seconds"]),
             times(faster), times(quieter), times(faster * quieter),
         )  # fmt: skip
     return [table]

@@ -45,7 +45,7 @@ def test_both_engines_are_brought_to_equal_error_and_timed(scene, monkeypatch):
 def test_noise_needs_no_references(scene, monkeypatch):
     monkeypatch.setattr(noise, "SCENES", (scene,))
     monkeypatch.setattr(render, "SMALL", (64, 36))
-    few, many = noise.measure_scene(scene, 2), noise.measure_scene(scene, 16)
+    few, many = (noise.measure_scene(scene, n, render.SMALL) for n in (2, 16))
     for engine in ("cycles", "komorebi"):
         assert many[f"{engine}_variance"] < few[f"{engine}_variance"] / 4
         assert many[f"{engine}_seconds"] > 0.0

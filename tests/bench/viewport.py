@@ -24,6 +24,7 @@ from bench.tables import Table, figure, times
 from bench.window import Window, block_size, picture
 
 ENGINES = ("CYCLES", "KOMOREBI")
+BARE = "BENCH_BARE"  # inside/bare_engine.py, which shows what Blender and the screen take
 EDITS = ("switch", "move_object", "move_view", "move_vertex", "change_color", "change_world")
 SAYS = {
     "switch": "switch to Rendered", "move_object": "object moved", "move_view": "view moved",
@@ -134,7 +135,23 @@ class _Rounds:
             for window in self.windows.values():
                 window.call("shade", "SOLID")
                 window.watch(0.5)
+        with self._bare() as window:
+            for _ in range(rounds):
+                for name in names:
+                    found.setdefault((name, BARE), []).append(edit(window, name, FEW))
         self._add(scene, triangles, found)
+
+    @contextmanager
+    def _bare(self) -> Iterator[Window]:
+        """Komorebi's window in Rendered shading by the engine that renders nothing."""
+        window = self.windows["KOMOREBI"]
+        window.call("engine", BARE)
+        window.call("switch")
+        window.watch(0.5)
+        yield window
+        window.call("shade", "SOLID")
+        window.call("engine", "KOMOREBI")
+        window.watch(0.5)
 
     def to_the_end(self, scene: str, triangles: int, rounds: int) -> None:
         """All samples after an object has moved, and `even`, when there was no more noise than
@@ -173,6 +190,8 @@ class _Rounds:
                 window.watch(QUIET[FEW], limit=2.0)
                 found.setdefault(engine, []).append(rate(window, start, seconds))
                 window.call("shade", "SOLID")
+        with self._bare() as window:
+            found[BARE] = [rate(window, start, seconds) for _ in range(rounds)]
         for engine, runs in found.items():
             row: Row = {"scene": case, "triangles": triangles, "case": case, "engine": engine}
             self.rows.append(row | {key: [run[key] for run in runs] for key in runs[0]})
@@ -252,7 +271,7 @@ def tables(rows: list[Row]) -> list[Table]:
 def _edit_table(rows: list[Row]) -> Table:
     table = Table(
         "Viewport, 960 × 540: seconds from edit to pixels on the screen, Cycles / Komorebi",
-        ["edit", "first picture", "", "full resolution", "", "64 samples", "", "as even", ""],
+        ["edit", "bare", "first picture", "", "full resolution", "", "64 samples", "", "as even", ""],
     )
     spreads = [0.0]
     timed = [r for r in rows if "first" in r]
@@ -260,7 +279,7 @@ def _edit_table(rows: list[Row]) -> Table:
         for case in unique(pick(timed, scene=scene), "case"):
             here = {r["engine"]: r for r in pick(timed, scene=scene, case=case)}
             name = f"{SAYS.get(case, 'object moved')}, {scene} of {here['KOMOREBI']['triangles']:,}"
-            cells = []
+            cells = [figure(median(here[BARE]["first"])) if BARE in here else ""]
             for key in ("first", "full", "last", "even"):
                 cycles, komorebi = (here[engine][key] for engine in ENGINES)
                 ends = key in ("last", "even")
@@ -269,7 +288,8 @@ def _edit_table(rows: list[Row]) -> Table:
                 spreads += [spread(komorebi)] if wanted else []
             table.add(name, *cells)
     table.notes = [
-        f"Largest spread of Komorebi's {100 * max(spreads):.0f} %. As even: with no more noise than "
+        f"Largest spread of Komorebi's {100 * max(spreads):.0f} %. Bare: an engine that renders "
+        "nothing, which is what Blender, its OpenGL and the screen take. As even: with no more noise than "
         "Cycles leaves after 64 samples, each of which has one light ray."
     ]
     return table
@@ -289,7 +309,7 @@ def _rate_table(rows: list[Row]) -> Table:
     table = Table(
         "Viewport: new pictures a second (of views or frames that there were; pixel width), and "
         "milliseconds that rendering adds to a timer's lateness",
-        ["", "triangles", *ENGINES],
+        ["", "triangles", "bare", *ENGINES],
     )
     for case, says in (("orbit", "orbit, ambient occlusion"), ("playback", "playback")):
         here = {r["engine"]: r for r in pick(rows, case=case)}
@@ -297,12 +317,12 @@ def _rate_table(rows: list[Row]) -> Table:
             cells = [
                 f"{figure(median(here[e]['rate']))} ({figure(median(here[e]['asked_rate']))}; "
                 f"{median(here[e]['block']):.0f})"
-                for e in ENGINES
+                for e in (BARE, *ENGINES)
             ]
             table.add(says, f"{here['KOMOREBI']['triangles']:,}", *cells)
     for key, says in (("mean", "lateness, mean"), ("p95", "lateness, 95 % are below")):
         here = {r["engine"]: r for r in pick(rows, case="latency")}
         if here:
             cells = [f"{1e3 * median(here[e][key]):.1f}" for e in ENGINES]
-            table.add(says, f"{here['KOMOREBI']['triangles']:,}", *cells)
+            table.add(says, f"{here['KOMOREBI']['triangles']:,}", "", *cells)
     return table

@@ -11,14 +11,16 @@ FIRST_SECONDS = 0.01
 # Blender has the processors for drawing, and nothing finer is begun before there has been none for
 # REST_SECONDS.
 MOTION_SECONDS, REST_SECONDS = 0.25, 0.08
-# The next picture is the finest one that is expected to come within this time.
-STEP_SECONDS = 0.1
+# The next picture is the finest one that is expected to come within this time. Pictures between
+# the first and one at full resolution cost a redraw each, which that one waits for.
+STEP_SECONDS = 0.35
 # Between two pictures that differ by their samples alone. Each costs a redraw, and shows less that
 # is new the later it comes.
 FIRST_REDRAW_SECONDS, LAST_REDRAW_SECONDS, REDRAW_SHARE = 0.1, 1.0, 0.25
 # Of pictures that are not the last: light rays of each camera ray, while pixels are wide and when
 # they are not. So the first picture at full resolution is there in a third of the time.
 WIDE_LIGHT_SAMPLES, FINE_LIGHT_SAMPLES = 2, 1
+FINE_SHARE = 0.6  # of the time of a pixel, for that
 
 
 def first_pixel(
@@ -37,10 +39,11 @@ def first_pixel(
 
 def next_pixel(pixel: int, seconds: float, final: int) -> int:
     """How wide the next picture's pixels are, when those of `pixel` took `seconds`."""
-    finer = pixel // 2
-    while finer > final and 4.0 * seconds * (pixel / finer) ** 2 <= STEP_SECONDS:
-        finer //= 2
-    return max(finer, final)
+    for finer in (final << k for k in range(16)):
+        fewer_rays = FINE_SHARE if finer == final else 1.0
+        if 2 * finer >= pixel or fewer_rays * seconds * (pixel / finer) ** 2 <= STEP_SECONDS:
+            return min(finer, pixel)
+    return final
 
 
 def redraw_seconds(elapsed: float) -> float:

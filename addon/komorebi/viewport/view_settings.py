@@ -23,6 +23,7 @@ def preview_settings(scene: Any) -> dict[str, Any]:
         "sample_offset": 0,
         "time_limit": 0.0,
         "use_progressive": True,
+        "samples_per_pass": 4,  # so that something new is shown every second
         "has_low_priority": True,  # Blender's window comes first
         "fast_gi_bounces": settings.ao_bounces,
         "use_adaptive_sampling": settings.use_preview_adaptive_sampling,

@@ -22,6 +22,8 @@ import numpy as np
 from mathutils import Quaternion, Vector
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "blender"))
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import bare_engine
 import support
 
 TICK_SECONDS = 0.005
@@ -74,6 +76,10 @@ def set_up(engine: str, method: str) -> None:
     cycles.transmission_bounces = cycles.volume_bounces = 0
     scene.komorebi.method, scene.komorebi.bounces = method, 0
     scene.update_tag()
+
+
+def engine(name: str) -> None:
+    bpy.context.scene.render.engine = name
 
 
 def samples(count: int) -> None:
@@ -288,4 +294,5 @@ def serve(path: str) -> None:
 if __name__ == "__main__":
     bpy.context.preferences.view.show_splash = False
     support.enable()
+    bare_engine.register()
     serve(sys.argv[sys.argv.index("--") + 1])

@@ -116,6 +116,15 @@ TEST(LightKernel, AmbientOcclusion) {
   expect_equal_to_scalar(context, 2, 100);
 }
 
+TEST(LightKernel, EvenSky) {
+  RenderContext context;
+  context.method = Method::kWorldLight;
+  context.albedo = Vec3(0.8f, 0.5f, 0.3f);
+  context.sky.constant = Vec3(0.05f, 1.7f, 0.0f);
+  expect_equal_to_scalar(context, 1, 3000);
+  expect_equal_to_scalar(context, 5, 777);
+}
+
 TEST(LightKernel, ProductOfMapAndCosine) {
   const Mat3d turn(glm::dvec3(0.36, 0.48, -0.8), glm::dvec3(-0.8, 0.6, 0.0),
                    glm::dvec3(0.48, 0.64, 0.6));
