@@ -4,7 +4,7 @@ import json
 
 import support
 
-FRAMES = 500
+FRAMES = 300
 SETTLED = range(40, 100)  # by then every buffer has been there, and the allocator has its reserve
 
 # A deforming mesh, instances of a collection, hair that is combed by the wave, and passes.

@@ -14,6 +14,11 @@ def previewed(thing, engine):
     global last
     scene.render.engine = engine
     before = pixels_of(thing)
+    if before.any():  # another engine's, which may look the same
+        preview = thing.preview_ensure()
+        preview.image_pixels_float = np.zeros(before.size, np.float32)
+        preview.is_image_custom = False
+        before = pixels_of(thing)
     thing.asset_generate_preview()
     # 3.4 ends by a fault, whatever the engine, when a preview is asked for before the last one is
     # done, and cannot be asked: done is what has appeared and does not change any more.
