@@ -34,7 +34,7 @@ from .releases import (
     VORONOI_PCG,
     cycles_or,
 )
-from .topology import corner_verts, face_offsets, face_order, smooth_faces
+from .topology import Topology, face_offsets, face_order, smooth_faces
 
 __all__ = [
     "CORNER_NORMALS",
@@ -48,8 +48,8 @@ __all__ = [
     "UNLIMITED_BOUNCES",
     "VERSION",
     "VORONOI_PCG",
+    "Topology",
     "casts_shadow",
-    "corner_verts",
     "cycles_or",
     "face_offsets",
     "face_order",
