@@ -30,7 +30,7 @@ SkySurvey two_fields(bool alike) {
     for (std::uint32_t j = 0; j < survey.rays_per_point; ++j) {
       const Bits2 bits = random.next();
       const Vec3 d = cosine_hemisphere_disk(Vec2(to_unit_float(bits.x), to_unit_float(bits.y)));
-      survey.directions.push_back(d);
+      survey.cells.push_back(static_cast<std::uint16_t>(octahedral_cell(d, SkySurvey::kGrid)));
       survey.seen.push_back(alike || (d.x > 0.0f) == (i % 2 == 0));
     }
   }
@@ -82,7 +82,7 @@ TEST(SkyPlaces, SurveysWithoutExtentOrPointsHaveNone) {
   survey.rays_per_point = 1;
   EXPECT_FALSE(SkyPlaces(survey, SkyVisibility(survey), shared_pool()).view().exists());
   survey.points.assign(100, {Vec3(1, 2, 3), kUp});
-  survey.directions.assign(100, kUp);
+  survey.cells.assign(100, static_cast<std::uint16_t>(octahedral_cell(kUp, SkySurvey::kGrid)));
   survey.seen.assign(100, 1);
   const SkyPlaces one_point(survey, SkyVisibility(survey), shared_pool());
   EXPECT_FALSE(one_point.view().exists());
@@ -205,7 +205,7 @@ TEST_F(SkyPlacesOfAScene, AreTheSameForAnyNumberOfThreads) {
   ASSERT_TRUE(survey_sky(context, kPlacesSurvey, one, Cancel(), a));
   ASSERT_TRUE(survey_sky(context, kPlacesSurvey, three, Cancel(), b));
   EXPECT_EQ(a.seen, b.seen);
-  EXPECT_EQ(a.directions, b.directions);
+  EXPECT_EQ(a.cells, b.cells);
 }
 
 double mean_of(const std::vector<float>& picture) {
