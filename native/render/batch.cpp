@@ -180,22 +180,22 @@ void BatchIntegrator::add_direct_light() {
 }
 
 bool BatchIntegrator::bounce(const Cancel& cancel) {
-  bounces_.clear();
-  bounces_alone_.clear();
+  bounces_.clear(surfaces_);
+  if (has_catchers_) bounces_alone_.clear(surfaces_);
   for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
     const std::uint32_t path = surfaces_.path(s);
-    const auto [pixel, sample] = paths_[path];
-    const std::uint32_t seed = pixels_[pixel].seed;
-    bounces_.begin(surfaces_, s, path, seed, sample);
+    const std::uint32_t sample = paths_[path].sample;
+    bounces_.begin(surfaces_, s, path, sample);
     if (has_catchers_ && is_catcher(context_, hits_[path].instance)) {
-      bounces_alone_.begin(surfaces_, s, path, seed, sample);
+      bounces_alone_.begin(surfaces_, s, path, sample);
     }
   }
-  return bounces_.trace(cancel, [&](std::uint32_t path, const Vec3& light) {
-    results_[path].radiance += light;
-  }) && bounces_alone_.trace(cancel, [&](std::uint32_t path, const Vec3& light) {
-    context_.passes.add(row(path), Quantity::kCatcherLight, light);
-  });
+  const auto add = [&](std::uint32_t path, const Vec3& light) { results_[path].radiance += light; };
+  if (!bounces_.trace(surfaces_, cancel, add)) return false;
+  return !has_catchers_ ||
+         bounces_alone_.trace(surfaces_, cancel, [&](std::uint32_t path, const Vec3& light) {
+           context_.passes.add(row(path), Quantity::kCatcherLight, light);
+         });
 }
 
 void BatchIntegrator::light_block(std::uint32_t begin, std::uint32_t end) {

@@ -12,46 +12,6 @@ BounceTracer::BounceTracer(const RenderContext& context)
       lamp_caster_(later_context(context, 1)),
       added_light_(later_context(context, 1), 1) {}
 
-void BounceTracer::clear() {
-  next_rays_.clear();
-  next_states_.clear();
-}
-
-void BounceTracer::begin(const SurfaceBatch& surfaces, std::uint32_t surface, std::uint32_t path,
-                         std::uint32_t pixel_seed, std::uint32_t sample) {
-  leave(0, surfaces, surface, {path, pixel_seed, sample, surfaces.albedo(surface), Vec3(0.0f)});
-}
-
-void BounceTracer::leave(std::uint32_t vertex, const SurfaceBatch& surfaces, std::uint32_t surface,
-                         State state) {
-  ScatterPoint point;
-  point.normal = surfaces.normal(surface);
-  point.geometric_normal = surfaces.geometric_normal(surface);
-  point.origin = surfaces.leaving_origin(surface);
-  if (context_.has_terminators) point.frequency = surfaces.frequency(surface);
-  point.time = surfaces.time(surface);
-  point.instance = surfaces.instance(surface);
-  point.primitive = surfaces.primitive(surface);
-  const Sampler sampler(state.pixel_seed);
-  Ray ray;
-  if (!scatter(context_, vertex, point, sampler, state.sample, state.throughput, ray)) return;
-  state.normal = point.normal;
-  next_rays_.push(ray);
-  next_states_.push_back(state);
-}
-
-/// The rays that left the last surfaces are those to be traced now.
-void BounceTracer::take_next() {
-  const RaySpan next = next_rays_.span();
-  rays_.clear();
-  states_.clear();
-  for (const std::uint32_t i : order_.sort(next)) {
-    rays_.push(next[i]);
-    states_.push_back(next_states_[i]);
-  }
-  clear();
-}
-
 bool BounceTracer::find_surfaces(std::uint32_t vertex, const Cancel& cancel) {
   const RaySpan rays = rays_.span();
   hits_.resize(rays.count);
@@ -60,7 +20,7 @@ bool BounceTracer::find_surfaces(std::uint32_t vertex, const Cancel& cancel) {
   surfaces_.clear(rays.count);
   for (std::uint32_t i = 0; i < rays.count; ++i) {
     if (!hits_[i].valid()) continue;
-    const State& state = states_[i];
+    const PathState& state = states_[i];
     surfaces_.push(i, hits_[i], rays.time[i], state.pixel_seed, state.sample * kLaterLightSamples);
   }
   surfaces_.fill(context_, hits_.data(), rays);
@@ -106,28 +66,29 @@ void BounceTracer::add_sky(const Visit& visit) const {
   const RaySpan rays = rays_.span();
   for (std::uint32_t i = 0; i < rays.count; ++i) {
     if (hits_[i].valid()) continue;
-    const State& state = states_[i];
+    const PathState& state = states_[i];
     const Ray ray = rays[i];
     visit(state.path,
           scattered_sky(context_, state.throughput, state.normal, ray.origin, ray.direction));
   }
 }
 
-bool BounceTracer::trace(const Cancel& cancel, Visit visit) {
-  for (std::uint32_t vertex = 1; !next_states_.empty(); ++vertex) {
-    take_next();
+bool BounceTracer::trace(const SurfaceBatch& in_view, const Cancel& cancel, Visit visit) {
+  leaving_.scatter(context_, 0, in_view, rays_, states_);
+  for (std::uint32_t vertex = 1; rays_.size() > 0; ++vertex) {
     if (!find_surfaces(vertex, cancel)) return false;
     if (shares_light(context_, vertex - 1)) add_sky(visit);
+    leaving_.clear(surfaces_.size());
     for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
-      State state = states_[surfaces_.path(s)];
+      const PathState& state = states_[surfaces_.path(s)];
       const Shading shading = surfaces_.shading(s);
       Vec3 light = light_[s] / static_cast<float>(kLaterLightSamples);
       if (has_more_light(context_)) light += more_light_[s];
       visit(state.path, indirect_light(context_, vertex, state.throughput, shading, light));
-      if (vertex == context_.bounces) continue;
-      state.throughput *= shading.albedo;
-      leave(vertex, surfaces_, s, state);
+      leaving_.set(s, state.path, state.sample, state.throughput * shading.albedo);
     }
+    if (vertex == context_.bounces) break;
+    leaving_.scatter(context_, vertex, surfaces_, rays_, states_);
   }
   return true;
 }

@@ -8,8 +8,8 @@
 #include "render/lamp_caster.h"
 #include "render/light_caster.h"
 #include "render/ray_batch.h"
-#include "render/ray_order.h"
 #include "render/scatter.h"
+#include "render/scatter_batch.h"
 #include "render/shade.h"
 
 namespace komorebi {
@@ -20,31 +20,23 @@ class BounceTracer {
  public:
   explicit BounceTracer(const RenderContext& context);
 
-  /// Forgets what was begun.
-  void clear();
+  /// Forgets what was begun; `surfaces` are those in view.
+  void clear(const SurfaceBatch& surfaces) { leaving_.clear(surfaces.size()); }
   /// Lets a path go on from a surface in view, shaded; `path` is the caller's word for it.
   void begin(const SurfaceBatch& surfaces, std::uint32_t surface, std::uint32_t path,
-             std::uint32_t pixel_seed, std::uint32_t sample);
+             std::uint32_t sample) {
+    leaving_.set(surface, path, sample, surfaces.albedo(surface));
+  }
   using Visit = FunctionRef<void(std::uint32_t path, const Vec3& light)>;
-  /// Follows all that was begun; visit(path, light) is told what each vertex brings to the pixel, a
-  /// path's in their order. False when cancelled on the way.
-  bool trace(const Cancel& cancel, Visit visit);
+  /// Follows all that was begun from `in_view`; visit(path, light) is told what each vertex brings
+  /// to the pixel, a path's in their order. False when cancelled on the way.
+  bool trace(const SurfaceBatch& in_view, const Cancel& cancel, Visit visit);
 
   std::uint64_t ray_count() const {
     return ray_count_ + caster_.ray_count() + lamp_caster_.ray_count() + added_light_.ray_count();
   }
 
  private:
-  /// A path on its way from one vertex to the next.
-  struct State {
-    std::uint32_t path, pixel_seed, sample;
-    Vec3 throughput;
-    Vec3 normal;  // of the surface that its ray has left
-  };
-
-  void leave(std::uint32_t vertex, const SurfaceBatch& surfaces, std::uint32_t surface,
-             State state);
-  void take_next();
   /// Of lamps, and what Fast GI adds.
   bool find_more_light(const RenderContext& context, std::uint32_t vertex, const Cancel& cancel);
   float light_share(std::uint32_t surface, const Vec3& direction) const;
@@ -55,9 +47,9 @@ class BounceTracer {
   LightCaster caster_;
   LampCaster lamp_caster_;
   AddedLight added_light_;
-  RayBatch rays_, next_rays_;
-  std::vector<State> states_, next_states_;  // of each ray
-  RayOrder order_;
+  ScatterBatch leaving_;
+  RayBatch rays_;
+  std::vector<PathState> states_;  // of each ray
   std::vector<Hit> hits_;
   SurfaceBatch surfaces_;
   BatchShader shader_;

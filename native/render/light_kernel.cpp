@@ -42,17 +42,6 @@ void sample_lights_scalar(const RenderContext& context, const LightBlock& block)
 
 }  // namespace
 
-void place_bins(const RenderContext& context, const Columns& normal, const Columns& origin,
-                std::uint32_t count, std::uint32_t* bins) {
-  const ProductView& product = context.product;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Vec3 n(normal.x[i], normal.y[i], normal.z[i]);
-    const std::uint32_t table = table_of_place(product.places, context.sky.texture_from_world * n,
-                                               Vec3(origin.x[i], origin.y[i], origin.z[i]));
-    if (table != kNoTable) bins[i] = product.bins * product.bins + table;
-  }
-}
-
 void sample_lights(const RenderContext& context, const LightBlock& block) {
   const int index = active_kernel_index();
   const LightKernel* const kernel = index < 0 ? nullptr : kSimdLightKernels[index];

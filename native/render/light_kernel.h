@@ -27,11 +27,6 @@ struct LightBlock {
   float* contribution[3];
 };
 
-/// Puts product_bin of the first `count` points in place of the bins that they have in the whole
-/// scene, where it is that of a place.
-void place_bins(const RenderContext& context, const Columns& normal, const Columns& origin,
-                std::uint32_t count, std::uint32_t* bins);
-
 /// sample_light (light.h) for many points at once, compiled for one instruction set; equal to it
 /// in every bit.
 struct LightKernel {

@@ -69,17 +69,6 @@ void even(const RenderContext& context, const LightBlock& block) {
       });
 }
 
-/// product_bin, one lane after another: what each looks up lies where its neighbours' does.
-HWY_INLINE Uint bins_at_places(const RenderContext& context, const LightBlock& block, std::size_t p,
-                               Uint bin) {
-  HWY_ALIGN std::uint32_t bins[hn::MaxLanes(TagU())];
-  hn::Store(bin, TagU(), bins);
-  const Columns normal{block.normal[0] + p, block.normal[1] + p, block.normal[2] + p};
-  place_bins(context, normal, {block.origin[0] + p, block.origin[1] + p, block.origin[2] + p},
-             static_cast<std::uint32_t>(hn::Lanes(TagU())), bins);
-  return hn::Load(TagU(), bins);
-}
-
 void product(const RenderContext& context, const LightBlock& block) {
   const ProductView& product = context.product;
   const float* const m = entries(context.sky.texture_from_world);
@@ -108,8 +97,7 @@ void product(const RenderContext& context, const LightBlock& block) {
   for_each_ray(
       context, block,
       [&](std::size_t p) HWY_ATTR {
-        const Uint bin = octahedral_cell_lanes(times(m, load(block.normal, p)), product.bins);
-        return product.places.exists() ? bins_at_places(context, block, p, bin) : bin;
+        return product_bin_lanes(product, times(m, load(block.normal, p)), load(block.origin, p));
       },
       [&](Uint bin, std::size_t p, Uint x, Uint y, std::size_t to) HWY_ATTR {
         points[steps.size()] = p;

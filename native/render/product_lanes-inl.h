@@ -56,24 +56,72 @@ HWY_INLINE Float below_one_lanes(Double fraction) {
   return hn::IfThenElse(hn::Lt(f, most), f, most);
 }
 
-HWY_INLINE Uint octahedral_cell_lanes(const Vec3Lanes& d, std::uint32_t n) {
+struct OctahedralLanes {
+  Float x, y;
+};
+
+/// octahedral_from_direction
+HWY_INLINE OctahedralLanes octahedral_lanes(const Vec3Lanes& d) {
   const Float ax = hn::Abs(d.x), ay = hn::Abs(d.y), az = hn::Abs(d.z);
   const Float sum = (ax + ay) + az;
   const Float zero = f32(0.0f), one = f32(1.0f);
   const Float folded_x = one - ay / sum, folded_y = one - ax / sum;
   const auto lower = hn::Lt(d.z, zero);
-  const Float px = hn::IfThenElse(
-      lower, hn::IfThenElse(hn::Lt(d.x, zero), hn::Neg(folded_x), folded_x), d.x / sum);
-  const Float py = hn::IfThenElse(
-      lower, hn::IfThenElse(hn::Lt(d.y, zero), hn::Neg(folded_y), folded_y), d.y / sum);
+  return {hn::IfThenElse(lower, hn::IfThenElse(hn::Lt(d.x, zero), hn::Neg(folded_x), folded_x),
+                         d.x / sum),
+          hn::IfThenElse(lower, hn::IfThenElse(hn::Lt(d.y, zero), hn::Neg(folded_y), folded_y),
+                         d.y / sum)};
+}
+
+/// octahedral_cell
+HWY_INLINE Uint octahedral_cell_lanes(const OctahedralLanes& p, std::uint32_t n) {
+  const Float zero = f32(0.0f);
   const Float half = f32(0.5f * static_cast<float>(n));
   const Float last = f32(static_cast<float>(n - 1));
   const auto limited = [&](Float x) HWY_ATTR {
     return hn::IfThenElse(hn::Gt(x, zero), hn::IfThenElse(hn::Lt(x, last), x, last), zero);
   };
-  const Uint column = truncated(limited(half + half * px));
-  const Uint row = truncated(limited(half + half * py));
+  const Uint column = truncated(limited(half + half * p.x));
+  const Uint row = truncated(limited(half + half * p.y));
   return hn::Add(hn::Mul(row, u32(n)), column);
+}
+
+/// cell_of_place (core/sky_places.h)
+HWY_INLINE Uint cell_of_place_lanes(const SkyPlacesView& v, const Vec3Lanes& at) {
+  const Float scale = f32(v.cells_per_length), zero = f32(0.0f);
+  const Float x = (at.x - f32(v.origin.x)) * scale, y = (at.y - f32(v.origin.y)) * scale,
+              z = (at.z - f32(v.origin.z)) * scale;
+  const auto within = [&](Float cell, std::uint32_t size) HWY_ATTR {
+    return hn::And(hn::Ge(cell, zero), hn::Lt(cell, f32(static_cast<float>(size))));
+  };
+  const auto inside =
+      hn::And(hn::And(within(x, v.size[0]), within(y, v.size[1])), within(z, v.size[2]));
+  const Uint row = hn::Add(hn::Mul(truncated(z), u32(v.size[1])), truncated(y));
+  const Uint cell = hn::Add(hn::Mul(row, u32(v.size[0])), truncated(x));
+  return hn::IfThenElse(hn::RebindMask(TagU(), inside), cell, u32(kNoTable));
+}
+
+/// product_bin, `local` being the normal in the map's space. What is looked up, in halves of words,
+/// is so one lane after another.
+HWY_INLINE Uint product_bin_lanes(const ProductView& p, const Vec3Lanes& local,
+                                  const Vec3Lanes& at) {
+  const OctahedralLanes normal = octahedral_lanes(local);
+  const Uint of_scene = octahedral_cell_lanes(normal, p.bins);
+  const SkyPlacesView& v = p.places;
+  if (!v.exists()) return of_scene;
+  constexpr std::uint32_t kBins = SkyPlacesView::kBins;
+  constexpr std::size_t kLanes = hn::MaxLanes(TagU());
+  HWY_ALIGN std::uint32_t cells[kLanes], normals[kLanes], bins[kLanes];
+  hn::Store(cell_of_place_lanes(v, at), TagU(), cells);
+  hn::Store(octahedral_cell_lanes(normal, kBins), TagU(), normals);
+  hn::Store(of_scene, TagU(), bins);
+  for (std::size_t l = 0; l < hn::Lanes(TagU()); ++l) {
+    const std::uint32_t place = cells[l] == kNoTable ? 0 : v.place[cells[l]];
+    if (place == 0) continue;
+    const std::uint32_t table = v.table[(place - 1) * kBins * kBins + normals[l]];
+    if (table != 0) bins[l] = p.bins * p.bins + table - 1;
+  }
+  return hn::Load(TagU(), bins);
 }
 
 /// The rows of texels that a patch row lies between; below the lowest and above the highest, which

@@ -97,11 +97,10 @@ void ProductTable::fill(const SkyVisibility* visibility, ThreadPool& pool) {
   column_cdf_.resize(std::size_t{bins_} * bins_ * rows_ * (columns_ + 1));
   const std::size_t cells = cells_.energy.size();
   std::vector<float> seen(SkyVisibility::kSides * cells, 1.0f);
-  if (visibility != nullptr) {
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      const auto side = static_cast<std::uint32_t>(i / cells);
-      seen[i] = max_of(std::sqrt(greatest_share(*visibility, side, i % cells)), kLeastSeen);
-    }
+  std::vector<float> share(std::size_t{SkyVisibility::kGrid} * SkyVisibility::kGrid);
+  for (std::uint32_t side = 0; visibility != nullptr && side < SkyVisibility::kSides; ++side) {
+    for (std::uint32_t i = 0; i < share.size(); ++i) share[i] = visibility->share_of_cell(side, i);
+    weigh_cells(share, {&seen[side * cells], cells});
   }
   pool.for_each_chunk(std::size_t{bins_} * bins_, 32, [&](std::size_t begin, std::size_t end) {
     for (std::size_t bin = begin; bin < end; ++bin) {
@@ -186,14 +185,14 @@ void ProductTable::sum_cells(const EnvironmentView& map, const Cancel& cancel) {
 
 /// A cell may be seen in part: what is seen most in it counts, else that part would have few rays
 /// of great weight.
-float ProductTable::greatest_share(const SkyVisibility& visibility, std::uint32_t side,
-                                   std::size_t cell) const {
-  float greatest = 0.0f;
-  for (std::size_t k = 0; k < kSpread; ++k) {
-    greatest =
-        max_of(greatest, visibility.share_of_cell(side, cells_.spread_cell[cell * kSpread + k]));
+void ProductTable::weigh_cells(std::span<const float> share, std::span<float> seen) const {
+  for (std::size_t cell = 0; cell < seen.size(); ++cell) {
+    float greatest = 0.0f;
+    for (std::size_t k = 0; k < kSpread; ++k) {
+      greatest = max_of(greatest, share[cells_.spread_cell[cell * kSpread + k]]);
+    }
+    seen[cell] = max_of(std::sqrt(greatest), kLeastSeen);
   }
-  return greatest;
 }
 
 void ProductTable::add_places(const SkyPlaces& places, ThreadPool& pool) {
@@ -214,13 +213,7 @@ void ProductTable::weigh_places(const SkyPlaces& places, std::size_t begin, std:
     const SkyPlaces::Table* const last = i > begin ? &table - 1 : nullptr;
     if (last == nullptr || last->place != table.place || last->side != table.side) {
       places.shares(table.place, table.side, share);
-      for (std::size_t cell = 0; cell < seen.size(); ++cell) {
-        float greatest = 0.0f;
-        for (std::size_t k = 0; k < kSpread; ++k) {
-          greatest = max_of(greatest, share[cells_.spread_cell[cell * kSpread + k]]);
-        }
-        seen[cell] = max_of(std::sqrt(greatest), kLeastSeen);
-      }
+      weigh_cells(share, seen);
     }
     fill_bin(bins_ * bins_ + static_cast<std::uint32_t>(i), table.bin, SkyPlacesView::kBins, seen);
   }

@@ -43,7 +43,8 @@ class ProductTable {
   };
   static constexpr std::size_t kSpread = 9;
   void sum_cells(const EnvironmentView& map, const Cancel& cancel);
-  float greatest_share(const SkyVisibility& visibility, std::uint32_t side, std::size_t cell) const;
+  /// What cells weigh, given the shares of rays that arrive from SkyVisibility's cells.
+  void weigh_cells(std::span<const float> share, std::span<float> seen) const;
   void fill(const SkyVisibility* visibility, ThreadPool& pool);
   void weigh_places(const SkyPlaces& places, std::size_t begin, std::size_t end);
   void fill_bin(std::uint32_t to, std::uint32_t bin, std::uint32_t bins,

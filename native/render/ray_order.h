@@ -12,11 +12,12 @@ namespace komorebi {
 /// trace them. Its arrays grow once.
 class RayOrder {
  public:
-  /// Numbers of `rays`, each once; valid until the next call.
+  /// Numbers of `rays`, each once; those of the same octant and cell in the order of their numbers.
+  /// Valid until the next call.
   const std::vector<std::uint32_t>& sort(const RaySpan& rays);
 
  private:
-  std::vector<std::uint64_t> keys_;  // octant, cell, number
+  std::vector<std::uint64_t> keys_, sorted_;  // octant and cell, number
   std::vector<std::uint32_t> order_;
 };
 

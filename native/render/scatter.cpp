@@ -34,10 +34,9 @@ bool scatter(const RenderContext& context, std::uint32_t vertex, const ScatterPo
   const Vec2 u = sampler.sample_2d(vertex_dimension(vertex, kVertexScatter), sample);
   ray.direction = make_frame(point.normal).to_world(cosine_hemisphere_disk(u));
   if (!(glm::dot(ray.direction, point.geometric_normal) > 0.0f)) return false;
-  if (context.cuts_cosines && point.frequency > 1.0f) {
-    const float cosine = glm::dot(ray.direction, point.normal);
-    if (!(cosine > 0.0f)) return false;
-    throughput *= cosine_left(point.frequency, cosine);
+  if (context.cuts_cosines && point.frequency > 1.0f &&
+      !cut_scattered(point.frequency, point.normal, ray.direction, throughput)) {
+    return false;
   }
   ray.origin = point.origin;
   ray.t_min = 0.0f;
@@ -47,6 +46,13 @@ bool scatter(const RenderContext& context, std::uint32_t vertex, const ScatterPo
   ray.self_instance = point.instance;
   ray.self_primitive = point.primitive;
   ray.path_key = path_key(sampler.pixel_seed, vertex_dimension(vertex, kVertexScatter), sample);
+  return true;
+}
+
+bool cut_scattered(float frequency, const Vec3& normal, const Vec3& direction, Vec3& throughput) {
+  const float cosine = glm::dot(direction, normal);
+  if (!(cosine > 0.0f)) return false;
+  throughput *= cosine_left(frequency, cosine);
   return true;
 }
 

@@ -35,6 +35,10 @@ struct ScatterPoint {
 bool scatter(const RenderContext& context, std::uint32_t vertex, const ScatterPoint& point,
              const Sampler& sampler, std::uint32_t sample, Vec3& throughput, Ray& ray);
 
+/// Cuts the last part of the cosine off a scattered path's throughput (core/terminator.h); false
+/// where nothing is left.
+bool cut_scattered(float frequency, const Vec3& normal, const Vec3& direction, Vec3& throughput);
+
 /// Whether the sky's light at a vertex is brought by both its light rays and the scattered ray that
 /// leaves it: at those from which paths go on, but the first. There light rays have little noise
 /// (in sponza under a map 1 % of the variance of four bounces), and passes are made of them. Nor at

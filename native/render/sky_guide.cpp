@@ -35,17 +35,19 @@ void SkyGuide::prepare(const Scene& scene, ThreadPool& pool, const Cancel& cance
   SkySurvey survey;
   if (!survey_sky(looked_by, kWholeSurvey, pool, cancel, survey)) return;
   auto visibility = std::make_unique<const SkyVisibility>(survey);
-  auto places = std::make_unique<const SkyPlaces>(survey, *visibility, pool);
-  if (places->variance_left() < kWorthSurvey) {
+  std::unique_ptr<const SkyPlaces> places;
+  const SkyPlaces trial(survey, *visibility, pool, SkyPlaces::Purpose::kTrial);
+  if (trial.variance_left() < kWorthSurvey) {
     SkySurvey closer;
     if (!survey_sky(looked_by, kPlacesSurvey, pool, cancel, closer)) return;
-    if (closer.directions.size() > survey.directions.size()) {
-      visibility = std::make_unique<const SkyVisibility>(closer);
-      places = std::make_unique<const SkyPlaces>(closer, *visibility, pool);
+    if (closer.cells.size() > survey.cells.size()) {
+      survey = std::move(closer);
+      visibility = std::make_unique<const SkyVisibility>(survey);
     }
+    places = std::make_unique<const SkyPlaces>(survey, *visibility, pool);
   }
   done_ = true;
-  const bool has_places = places->variance_left() < kWorthTables;
+  const bool has_places = places != nullptr && places->variance_left() < kWorthTables;
   if (ambient) {
     const float gained = has_places ? places->variance_left() : 1.0f;
     if (visibility->variance_left() * gained > kWorthwhile) return;

@@ -1,17 +1,15 @@
 #include "render/sky_places.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numeric>
 #include <tuple>
-#include <unordered_map>
 
 namespace komorebi {
 namespace {
 
-constexpr float kMostCells = 32.0f;        ///< along the longest axis
-constexpr std::uint32_t kCoarseGrid = 16;  ///< of directions, for places of a coarser level
-constexpr double kOutliers = 0.01;  ///< share of the points that the grid leaves out on each side
+constexpr float kMostCells = 32.0f;  ///< along the longest axis
+constexpr double kOutliers = 0.01;   ///< share of the points that the grid leaves out on each side
 
 /// What the next coarser level knows counts as much as so many rays.
 constexpr float kPriorRays = 4.0f;
@@ -34,8 +32,8 @@ std::pair<float, float> range(const SkySurvey& survey, int axis) {
 
 /// Of the coarse grid the cell that a fine one lies in.
 std::uint32_t coarse_cell(std::uint32_t cell) {
-  constexpr std::uint32_t kRatio = SkyPlaces::kGrid / kCoarseGrid;
-  return (cell / SkyPlaces::kGrid / kRatio) * kCoarseGrid + cell % SkyPlaces::kGrid / kRatio;
+  constexpr std::uint32_t kFine = SkyPlaces::kGrid, kCoarse = SkyPlaces::kCoarseGrid;
+  return (cell / kFine / (kFine / kCoarse)) * kCoarse + cell % kFine / (kFine / kCoarse);
 }
 
 /// The noise of a surface's light that no visibility explains, over the square of the light.
@@ -46,7 +44,8 @@ constexpr std::uint32_t kPlacesPerTrial = 4;
 
 }  // namespace
 
-SkyPlaces::SkyPlaces(const SkySurvey& survey, const SkyVisibility& whole, ThreadPool& pool) {
+SkyPlaces::SkyPlaces(const SkySurvey& survey, const SkyVisibility& whole, ThreadPool& pool,
+                     Purpose purpose) {
   if (survey.points.empty()) return;
   coarse_whole_.assign(std::size_t{SkyVisibility::kSides} * kCoarseGrid * kCoarseGrid, 0.0f);
   for (std::uint32_t i = 0; i < SkyVisibility::kSides * kGrid * kGrid; ++i) {
@@ -58,10 +57,10 @@ SkyPlaces::SkyPlaces(const SkySurvey& survey, const SkyVisibility& whole, Thread
   if (places_ == 0) return;
   pool.for_each_chunk(kLevels, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t level = begin; level < end; ++level) {
-      levels_[level] = count_level(survey, static_cast<std::uint32_t>(level));
+      levels_[level] = count_level(survey, static_cast<std::uint32_t>(level), purpose);
     }
   });
-  choose_tables(survey);
+  if (purpose == Purpose::kTables) choose_tables(survey);
   variance_left_ = measure_variance();
 }
 
@@ -94,32 +93,52 @@ void SkyPlaces::find_places(const SkySurvey& survey) {
   }
 }
 
-SkyPlaces::Level SkyPlaces::count_level(const SkySurvey& survey, std::uint32_t level) const {
-  Level found;
-  found.grid = level == 0 ? kGrid : kCoarseGrid;
-  found.place.resize(places_);
-  std::unordered_map<std::uint32_t, std::uint32_t> numbers;
+/// Numbers of a level's places by those of the finest one; returns how many there are.
+std::uint32_t SkyPlaces::number_places(std::uint32_t level,
+                                       std::vector<std::uint32_t>& place) const {
+  place.resize(places_);
+  if (level == 0) {
+    std::iota(place.begin(), place.end(), 0u);
+    return places_;
+  }
+  std::uint32_t size[3];
+  for (int a = 0; a < 3; ++a) size[a] = ((size_[a] - 1) >> level) + 1;
+  std::vector<std::uint32_t> numbers(std::size_t{size[0]} * size[1] * size[2], kNoTable);
+  std::uint32_t count = 0;
   for (std::uint32_t cell = 0; cell < place_of_cell_.size(); ++cell) {
     if (place_of_cell_[cell] == 0) continue;
     const std::uint32_t x = cell % size_[0] >> level, y = cell / size_[0] % size_[1] >> level,
                         z = cell / (size_[0] * size_[1]) >> level;
-    const auto number = static_cast<std::uint32_t>(numbers.size());
-    found.place[place_of_cell_[cell] - 1u] =
-        numbers.try_emplace((z << 8 | y) << 8 | x, number).first->second;
+    std::uint32_t& number = numbers[(z * size[1] + y) * size[0] + x];
+    if (number == kNoTable) number = count++;
+    place[place_of_cell_[cell] - 1u] = number;
   }
-  found.first.assign(numbers.size() * SkyVisibility::kSides, kNoTable);
-  const std::uint32_t cells = found.grid * found.grid;
+  return count;
+}
+
+SkyPlaces::Level SkyPlaces::count_level(const SkySurvey& survey, std::uint32_t level,
+                                        Purpose purpose) const {
+  Level found;
+  found.grid = level == 0 ? kGrid : kCoarseGrid;
+  found.first.assign(number_places(level, found.place) * SkyVisibility::kSides, kNoTable);
+  const bool all = level > 0 || purpose == Purpose::kTables;
+  std::vector<std::uint32_t> of_point(survey.points.size(), kNoTable);  // entries of `first`
+  std::uint32_t known = 0;
   for (std::size_t i = 0; i < survey.points.size(); ++i) {
-    if (place_of_point_[i] == kNoTable) continue;
-    const std::uint32_t side = SkyVisibility::side(survey.points[i].normal);
-    std::uint32_t& first =
-        found.first[found.place[place_of_point_[i]] * SkyVisibility::kSides + side];
-    if (first == kNoTable) {
-      first = static_cast<std::uint32_t>(found.counts.size());
-      found.counts.resize(found.counts.size() + cells);
-    }
+    const std::uint32_t place = place_of_point_[i];
+    if (place == kNoTable || !(all || is_tried(place))) continue;
+    of_point[i] =
+        found.place[place] * SkyVisibility::kSides + SkyVisibility::side(survey.points[i].normal);
+    std::uint32_t& first = found.first[of_point[i]];
+    if (first == kNoTable) first = found.grid * found.grid * known++;
+  }
+  found.counts.resize(std::size_t{found.grid} * found.grid * known);
+  for (std::size_t i = 0; i < survey.points.size(); ++i) {
+    if (of_point[i] == kNoTable) continue;
+    Count* const counts = &found.counts[found.first[of_point[i]]];
     for (std::size_t j = i * survey.rays_per_point; j < (i + 1) * survey.rays_per_point; ++j) {
-      Count& count = found.counts[first + octahedral_cell(survey.directions[j], found.grid)];
+      const std::uint32_t cell = survey.cells[j];
+      Count& count = counts[level == 0 ? cell : coarse_cell(cell)];
       ++count.cast;
       count.seen = static_cast<std::uint16_t>(count.seen + survey.seen[j]);
     }
@@ -163,24 +182,33 @@ void SkyPlaces::choose_tables(const SkySurvey& survey) {
   }
 }
 
-void SkyPlaces::shares(std::uint32_t place, std::uint32_t side, std::span<float> share) const {
-  std::array<float, kCoarseGrid * kCoarseGrid> coarse;
-  std::copy_n(&coarse_whole_[side * coarse.size()], coarse.size(), coarse.begin());
-  const auto learn = [&](std::uint32_t l, std::size_t cell, float& of) {
-    const Level& level = levels_[l];
-    const Count& count =
-        level.counts[level.first[level.place[place] * SkyVisibility::kSides + side] + cell];
-    of = (static_cast<float>(count.seen) + kPriorRays * of) /
+float SkyPlaces::learnt(std::uint32_t l, std::uint32_t place, std::uint32_t side,
+                        std::uint32_t cell, float prior) const {
+  const Level& level = levels_[l];
+  const Count& count =
+      level.counts[level.first[level.place[place] * SkyVisibility::kSides + side] + cell];
+  return (static_cast<float>(count.seen) + kPriorRays * prior) /
          (static_cast<float>(count.cast) + kPriorRays);
-  };
+}
+
+SkyPlaces::CoarseShares SkyPlaces::coarse_shares(std::uint32_t place, std::uint32_t side) const {
+  CoarseShares coarse;
+  std::copy_n(&coarse_whole_[side * coarse.size()], coarse.size(), coarse.begin());
   for (std::uint32_t l = kLevels; l-- > 1;) {
     if (!knows(l, place, side)) continue;
-    for (std::size_t cell = 0; cell < coarse.size(); ++cell) learn(l, cell, coarse[cell]);
+    for (std::uint32_t cell = 0; cell < coarse.size(); ++cell) {
+      coarse[cell] = learnt(l, place, side, cell, coarse[cell]);
+    }
   }
+  return coarse;
+}
+
+void SkyPlaces::shares(std::uint32_t place, std::uint32_t side, std::span<float> share) const {
+  const CoarseShares coarse = coarse_shares(place, side);
   const bool knows_place = knows(0, place, side);
   for (std::uint32_t cell = 0; cell < share.size(); ++cell) {
-    share[cell] = coarse[coarse_cell(cell)];
-    if (knows_place) learn(0, cell, share[cell]);
+    const float prior = coarse[coarse_cell(cell)];
+    share[cell] = knows_place ? learnt(0, place, side, cell, prior) : prior;
   }
 }
 
@@ -189,30 +217,40 @@ bool SkyPlaces::knows(std::uint32_t level, std::uint32_t place, std::uint32_t si
   return of.first[of.place[place] * SkyVisibility::kSides + side] != kNoTable;
 }
 
+/// One place of so many is looked at to tell what places are worth.
+bool SkyPlaces::is_tried(std::uint32_t place) {
+  return place % kPlacesPerTrial == 0;
+}
+
 /// As SkyVisibility::variance_left, the rays of a place being those that were cast there.
 float SkyPlaces::measure_variance() const {
   const Level& finest = levels_[0];
-  std::vector<float> share(std::size_t{kGrid} * kGrid);
+  constexpr std::uint32_t kCells = kGrid * kGrid;
+  std::vector<double> root_of_whole(whole_.size());
+  for (std::size_t i = 0; i < whole_.size(); ++i) {
+    root_of_whole[i] = std::sqrt(static_cast<double>(whole_[i]));
+  }
   double by_place = 0.0, by_whole = 0.0;
   for (std::uint32_t i = 0; i < finest.first.size(); ++i) {
-    if (finest.first[i] == kNoTable || i / SkyVisibility::kSides % kPlacesPerTrial != 0) continue;
-    const std::uint32_t side = i % SkyVisibility::kSides;
-    shares(i / SkyVisibility::kSides, side, share);
-    double rays = 0.0, seen = 0.0, root = 0.0, root_of_whole = 0.0, weighted = 0.0;
-    for (std::uint32_t cell = 0; cell < share.size(); ++cell) {
+    const std::uint32_t place = i / SkyVisibility::kSides, side = i % SkyVisibility::kSides;
+    if (finest.first[i] == kNoTable || !is_tried(place)) continue;
+    const CoarseShares coarse = coarse_shares(place, side);
+    double rays = 0.0, seen = 0.0, root = 0.0, whole_root = 0.0, weighted = 0.0;
+    for (std::uint32_t cell = 0; cell < kCells; ++cell) {
       const double cast = finest.counts[finest.first[i] + cell].cast;
       if (cast == 0.0) continue;
-      const auto here = static_cast<double>(share[cell]);
-      const double whole = std::sqrt(static_cast<double>(whole_[side * share.size() + cell]));
+      const auto here =
+          static_cast<double>(learnt(0, place, side, cell, coarse[coarse_cell(cell)]));
+      const double whole = root_of_whole[side * kCells + cell];
       rays += cast;
       seen += cast * here;
       root += cast * std::sqrt(here);
-      root_of_whole += cast * whole;
+      whole_root += cast * whole;
       weighted += cast * here / whole;
     }
     const double other = kOtherNoise * seen * seen;
     by_place += (root * root - seen * seen + other) / rays;
-    by_whole += (weighted * root_of_whole - seen * seen + other) / rays;
+    by_whole += (weighted * whole_root - seen * seen + other) / rays;
   }
   return by_whole > 0.0 ? static_cast<float>(by_place / by_whole) : 1.0f;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -15,14 +16,19 @@ namespace komorebi {
 /// §3; here all levels count, each as the prior of the next).
 class SkyPlaces {
  public:
-  static constexpr std::uint32_t kGrid = SkyVisibility::kGrid;  ///< of directions
+  /// Of directions, for places of the finest level and of the others.
+  static constexpr std::uint32_t kGrid = SkyVisibility::kGrid, kCoarseGrid = 16;
 
   /// The normals of a place that rays go out for, and the side that they face.
   struct Table {
     std::uint32_t place, side, bin;
   };
 
-  SkyPlaces(const SkySurvey& survey, const SkyVisibility& whole, ThreadPool& pool);
+  /// kTrial: to tell what places are worth, by some of them; it has no tables nor shares.
+  enum class Purpose { kTrial, kTables };
+
+  SkyPlaces(const SkySurvey& survey, const SkyVisibility& whole, ThreadPool& pool,
+            Purpose purpose = Purpose::kTables);
 
   /// The variance of ambient occlusion by what places see over that by what the whole sees, for
   /// independent samples.
@@ -49,12 +55,20 @@ class SkyPlaces {
     std::vector<Count> counts;         // [grid²] each
   };
   static constexpr std::uint32_t kLevels = 4;
+  using CoarseShares = std::array<float, kCoarseGrid * kCoarseGrid>;
 
   void find_places(const SkySurvey& survey);
   std::uint32_t place_of(const Vec3& origin) const;
-  Level count_level(const SkySurvey& survey, std::uint32_t level) const;
+  std::uint32_t number_places(std::uint32_t level, std::vector<std::uint32_t>& place) const;
+  Level count_level(const SkySurvey& survey, std::uint32_t level, Purpose purpose) const;
   void choose_tables(const SkySurvey& survey);
   bool knows(std::uint32_t level, std::uint32_t place, std::uint32_t side) const;
+  /// The share of a cell's rays that arrive by what a level knows of a place, given what is likely.
+  float learnt(std::uint32_t level, std::uint32_t place, std::uint32_t side, std::uint32_t cell,
+               float prior) const;
+  /// What all levels but the finest know.
+  CoarseShares coarse_shares(std::uint32_t place, std::uint32_t side) const;
+  static bool is_tried(std::uint32_t place);
   float measure_variance() const;
 
   std::vector<float> whole_, coarse_whole_;  // [side][directions]: shares

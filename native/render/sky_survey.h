@@ -10,16 +10,19 @@
 namespace komorebi {
 
 /// What surfaces see of the sky, looked at with few rays before a render. Directions and normals
-/// are those of the map's own space. A function of the scene, the camera and the method alone.
+/// are those of the map's own space, directions as cells of an octahedral grid. A function of the
+/// scene, the camera and the method alone.
 struct SkySurvey {
+  static constexpr std::uint32_t kGrid = 32;
+
   struct Point {
     Vec3 origin{0.0f};  ///< leaving_origin, in the scene's space
     Vec3 normal{0.0f};  ///< of the shading
   };
   std::vector<Point> points;
   std::uint32_t rays_per_point = 0;
-  std::vector<Vec3> directions;    ///< [points][rays_per_point], drawn by the cosine
-  std::vector<std::uint8_t> seen;  ///< of each whether it gets to the sky
+  std::vector<std::uint16_t> cells;  ///< [points][rays_per_point]: directions drawn by the cosine
+  std::vector<std::uint8_t> seen;    ///< of each whether it gets to the sky
 };
 
 /// How much is looked at.

@@ -14,11 +14,14 @@ constexpr float kPriorRays = 8.0f;
 
 SkyVisibility::SkyVisibility(const SkySurvey& survey)
     : counts_(std::size_t{kSides} * kGrid * kGrid) {
-  for (std::size_t i = 0; i < survey.directions.size(); ++i) {
-    const std::uint32_t of = side(survey.points[i / survey.rays_per_point].normal);
-    Count& c = counts_[of * kGrid * kGrid + octahedral_cell(survey.directions[i], kGrid)];
-    ++c.cast;
-    c.seen += survey.seen[i];
+  std::size_t ray = 0;
+  for (const SkySurvey::Point& point : survey.points) {
+    Count* const of_side = &counts_[side(point.normal) * kGrid * kGrid];
+    for (std::uint32_t j = 0; j < survey.rays_per_point; ++j, ++ray) {
+      Count& c = of_side[survey.cells[ray]];
+      ++c.cast;
+      c.seen += survey.seen[ray];
+    }
   }
 }
 

@@ -13,7 +13,7 @@ namespace komorebi {
 /// "Variance-Aware Path Guiding", §3.
 class SkyVisibility {
  public:
-  static constexpr std::uint32_t kSides = 6, kGrid = 32;
+  static constexpr std::uint32_t kSides = 6, kGrid = SkySurvey::kGrid;
 
   explicit SkyVisibility(const SkySurvey& survey);
 

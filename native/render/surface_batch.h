@@ -6,6 +6,7 @@
 #include "render/light.h"
 #include "render/light_kernel.h"
 #include "render/material.h"
+#include "render/scatter_kernel.h"
 #include "render/surface_kernel.h"
 
 namespace komorebi {
@@ -152,6 +153,19 @@ class SurfaceBatch {
     }
     block.pixel_seed = &pixel_seed_[begin];
     block.first_index = &first_index_[begin];
+    return block;
+  }
+
+  /// What paths that go on from all of them read of it.
+  ScatterBlock scatter_block() const {
+    ScatterBlock block{};
+    block.count = count_;
+    for (std::size_t c = 0; c < 3; ++c) {
+      block.normal[c] = floats_[c].data();
+      block.geometric_normal[c] = floats_[3 + c].data();
+    }
+    block.frequency = floats_[18].data();
+    block.pixel_seed = pixel_seed_.data();
     return block;
   }
 

@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
+#include "bvh/traverse.h"
+#include "render/light.h"
+#include "render/light_kernel.h"
 #include "render/sky_guide.h"
 #include "support/arcade.h"
 #include "support/direction_test.h"
@@ -25,7 +30,7 @@ SkySurvey two_fields(bool alike) {
     for (std::uint32_t j = 0; j < survey.rays_per_point; ++j) {
       const Bits2 bits = random.next();
       const Vec3 d = cosine_hemisphere_disk(Vec2(to_unit_float(bits.x), to_unit_float(bits.y)));
-      survey.directions.push_back(d);
+      survey.cells.push_back(static_cast<std::uint16_t>(octahedral_cell(d, SkySurvey::kGrid)));
       survey.seen.push_back(alike || (d.x > 0.0f) == (i % 2 == 0));
     }
   }
@@ -77,7 +82,7 @@ TEST(SkyPlaces, SurveysWithoutExtentOrPointsHaveNone) {
   survey.rays_per_point = 1;
   EXPECT_FALSE(SkyPlaces(survey, SkyVisibility(survey), shared_pool()).view().exists());
   survey.points.assign(100, {Vec3(1, 2, 3), kUp});
-  survey.directions.assign(100, kUp);
+  survey.cells.assign(100, static_cast<std::uint16_t>(octahedral_cell(kUp, SkySurvey::kGrid)));
   survey.seen.assign(100, 1);
   const SkyPlaces one_point(survey, SkyVisibility(survey), shared_pool());
   EXPECT_FALSE(one_point.view().exists());
@@ -130,6 +135,69 @@ TEST_F(SkyPlacesOfAScene, DensityIsThatOfTheSamplesAndComesToOne) {
   EXPECT_GE(tables, 3);
 }
 
+/// Of surfaces within places, between them and outside, some at no place at all.
+TEST_F(SkyPlacesOfAScene, AreFoundInLanesAsOneByOne) {
+  const RenderContext context = guided();
+  ASSERT_TRUE(context.product.places.exists());
+  constexpr std::uint32_t kCount = 4096;
+  RandomBits random(4);
+  std::vector<float> columns[6];
+  std::vector<SurfacePoint> points;
+  std::vector<std::uint32_t> seeds, first(kCount, 0);
+  std::uint32_t of_places = 0;
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    const Vec2 a = random.next_2d(), b = random.next_2d();
+    SurfacePoint point;
+    point.normal = i % 3 != 0 ? kUp : uniform_sphere(b);
+    point.geometric_normal = point.normal;
+    point.position = Vec3(20.0f * a.x - 1.0f, 8.0f * a.y - 4.0f, i % 4 != 0 ? 0.0f : 4.0f * b.x) -
+                     Vec3(context.origin);
+    if (i % 100 == 1) point.position.y = std::numeric_limits<float>::quiet_NaN();
+    if (i % 100 == 2) point.position *= 1e20f;
+    for (int c = 0; c < 3; ++c) {
+      columns[static_cast<std::size_t>(c)].push_back(point.normal[c]);
+      columns[static_cast<std::size_t>(3 + c)].push_back(leaving_origin(point)[c]);
+    }
+    const Vec3 local = context.sky.texture_from_world * point.normal;
+    of_places +=
+        table_of_place(context.product.places, local, leaving_origin(point)) != kNoTable ? 1u : 0u;
+    points.push_back(point);
+    seeds.push_back(random.next().x);
+  }
+  EXPECT_GT(of_places, kCount / 8);
+  EXPECT_LT(of_places, kCount - kCount / 8);
+  LightBlock block{};
+  block.point_count = kCount;
+  for (std::size_t c = 0; c < 3; ++c) {
+    block.normal[c] = block.geometric_normal[c] = columns[c].data();
+    block.origin[c] = columns[3 + c].data();
+  }
+  block.pixel_seed = seeds.data();
+  block.first_index = first.data();
+  block.rays_per_point = 1;
+  block.stride = kCount;
+  for (const std::string& name : built_instruction_sets()) {
+    force_instruction_set(name);
+    std::vector<float> drawn[6];
+    for (auto& column : drawn) column.resize(kCount);
+    for (std::size_t c = 0; c < 3; ++c) {
+      block.direction[c] = drawn[c].data();
+      block.contribution[c] = drawn[3 + c].data();
+    }
+    sample_lights(context, block);
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+      const LightSample expected = sample_light(context, points[i], Sampler(seeds[i]), 0);
+      for (int c = 0; c < 3; ++c) {
+        ASSERT_EQ(drawn[static_cast<std::size_t>(3 + c)][i], expected.contribution[c])
+            << name << " " << i;
+        if (expected.contribution == Vec3(0.0f)) continue;
+        ASSERT_EQ(drawn[static_cast<std::size_t>(c)][i], expected.direction[c]) << name << " " << i;
+      }
+    }
+  }
+  force_instruction_set("");
+}
+
 TEST_F(SkyPlacesOfAScene, AreTheSameForAnyNumberOfThreads) {
   const RenderContext context = guided();
   ThreadPool one(1), three(3);
@@ -137,7 +205,7 @@ TEST_F(SkyPlacesOfAScene, AreTheSameForAnyNumberOfThreads) {
   ASSERT_TRUE(survey_sky(context, kPlacesSurvey, one, Cancel(), a));
   ASSERT_TRUE(survey_sky(context, kPlacesSurvey, three, Cancel(), b));
   EXPECT_EQ(a.seen, b.seen);
-  EXPECT_EQ(a.directions, b.directions);
+  EXPECT_EQ(a.cells, b.cells);
 }
 
 double mean_of(const std::vector<float>& picture) {
