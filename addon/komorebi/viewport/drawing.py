@@ -10,7 +10,6 @@ from ..scene_data import FloatArray
 from .view_camera import Rect
 from .worker import Picture
 
-
 # Blender's own shader for images interpolates, which would hide how coarse a picture is.
 VERTEX = """
 void main()

@@ -22,8 +22,14 @@ from ..scene_data import FloatArray, SceneData
 from . import keys, studio_blur
 from .denoising import DenoisingRequest, ViewDenoiser
 from .refinement import (
-    MOTION_SECONDS, REST_SECONDS, first_pixel, is_quick, next_pixel, quick_settings, redraw_seconds,
-)  # fmt: skip
+    MOTION_SECONDS,
+    REST_SECONDS,
+    first_pixel,
+    is_quick,
+    next_pixel,
+    quick_settings,
+    redraw_seconds,
+)
 from .texels import texels_of
 from .view_camera import ViewCamera, coarse_view
 
