@@ -42,9 +42,6 @@ class KomorebiRenderEngine(bpy.types.RenderEngine):
     def __del__(self) -> None:
         try:
             self.frame = None
-            viewport = getattr(self, "viewport", None)
-            if viewport is not None:
-                viewport.close()
             base = super()
             if hasattr(base, "__del__"):
                 base.__del__()
@@ -76,8 +73,8 @@ class KomorebiRenderEngine(bpy.types.RenderEngine):
             from .viewport.viewport import Viewport
 
             viewport = self.viewport = Viewport(self)
-            # Not left to __del__ alone: from what Blender has freed first, and its other threads
-            # have still held, nothing can be asked any more.
+            # Not left to __del__: of what Blender has freed first, and its other threads have still
+            # held, nothing can be asked any more there.
             weakref.finalize(self, viewport.close).atexit = False
         return viewport
 

@@ -20,6 +20,9 @@ class Unchanged:
 
     def __init__(self) -> None:
         self._keys: dict[Address, MeshKey] = {}
+        # Of objects that have changed since they were read: how their vertices were joined then,
+        # which is as a rule how they are. A copy of all others would take memory for nothing.
+        self._topologies: dict[int, Any | None] = {}
 
     def begin(self, depsgraph: Any) -> None:
         """Forgets what has changed since the last call. To be called for each view layer, as each
@@ -30,10 +33,21 @@ class Unchanged:
             if update.is_updated_geometry
         }
         if changed:
+            for _, original, *_ in self._keys:
+                if original in changed:
+                    self._topologies.setdefault(original, None)
             self._keys = {a: key for a, key in self._keys.items() if a[1] not in changed}
 
     def key(self, address: Address) -> MeshKey | None:
         return self._keys.get(address)
+
+    def topology(self, original: int) -> Any | None:
+        """A compat.Topology that this object's mesh may have."""
+        return self._topologies.get(original)
+
+    def remember_topology(self, original: int, topology: Any) -> None:
+        if original in self._topologies:
+            self._topologies[original] = topology
 
     def remember(self, address: Address, key: MeshKey) -> None:
         self._keys[address] = key

@@ -45,7 +45,7 @@ PARTS: dict[str, Part] = {
     "motion": ("1 minute", motion.measure, motion.tables),
     "scale": ("3 minutes", scale.measure, scale.tables),
     "noise": ("2 minutes", noise.measure, noise.tables),
-    "viewport": ("10 minutes", viewport.measure, viewport.tables),
+    "viewport": ("13 minutes", viewport.measure, viewport.tables),
 }
 
 

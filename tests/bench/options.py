@@ -60,7 +60,10 @@ def parser() -> argparse.ArgumentParser:
         help="pictures: this scene (may be repeated)",
     )
     made.add_argument(
-        "--size", type=size, metavar="WIDTHxHEIGHT", help="pictures: timed at this size instead; noise: measured at it"
+        "--size",
+        type=size,
+        metavar="WIDTHxHEIGHT",
+        help="pictures: timed at this size instead; noise: measured at it",
     )
     made.add_argument(
         "--from",

@@ -237,7 +237,7 @@ def dragon_file() -> str:
 
 
 def measure(options: argparse.Namespace) -> list[Row]:
-    """About ten minutes, most of them Cycles'."""
+    """About thirteen minutes, most of them Cycles'."""
     rounds = 1 if options.quick else options.rounds or 5
     seconds = 1.0 if options.quick else 4.0
     with both() as windows:
@@ -272,7 +272,7 @@ def _edit_table(rows: list[Row]) -> Table:
     table = Table(
         "Viewport, 960 × 540: seconds from edit to pixels on the screen, Cycles / Komorebi",
         ["edit", "bare", "first picture", "", "full resolution", "", "64 samples", "", "as even", ""],
-    )
+    )  # fmt: skip
     spreads = [0.0]
     timed = [r for r in rows if "first" in r]
     for scene in unique(timed, "scene"):

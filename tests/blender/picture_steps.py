@@ -126,7 +126,8 @@ def passes():
     prepare(samples=16)
     yield from full_view()
     for name in ("COMBINED", "NORMAL", "AO", "DIFFUSE_COLOR"):
-        w.space().shading.render_pass = name
+        w.space().shading.komorebi.render_pass = name
+        w.view()["area"].tag_redraw()
         yield 0.2
         yield from w.finished(LIMIT)
         keep()

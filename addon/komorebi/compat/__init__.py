@@ -35,7 +35,7 @@ from .releases import (
     WHOLE_RESULTS,
     cycles_or,
 )
-from .topology import corner_verts, face_offsets, face_order, smooth_faces
+from .topology import Topology, face_offsets, face_order, smooth_faces
 
 __all__ = [
     "CORNER_NORMALS",
@@ -50,8 +50,8 @@ __all__ = [
     "VERSION",
     "VORONOI_PCG",
     "WHOLE_RESULTS",
+    "Topology",
     "casts_shadow",
-    "corner_verts",
     "cycles_or",
     "face_offsets",
     "face_order",

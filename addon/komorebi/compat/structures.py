@@ -47,6 +47,15 @@ def faces(mesh: Any) -> NDArray[Any] | None:
     return found
 
 
+def ints(items: Any) -> NDArray[Any] | None:
+    """The memory of a generic attribute's integers, as Blender 3.6 and later keep them; None: not
+    as expected."""
+    found = _view(items, np.dtype("<i4"))
+    if found is None or (found[0], found[-1]) != (items[0].value, items[len(items) - 1].value):
+        return None
+    return found
+
+
 def _view(items: Any, kind: np.dtype[Any]) -> NDArray[Any] | None:
     """The memory of a mesh's collection, if its items lie one after the other."""
     count = len(items)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..scene_data import BoolArray, IntArray
 from . import structures
@@ -12,6 +14,57 @@ from .releases import GENERIC_ATTRIBUTES
 
 # foreach_get copies memory only into an array of the property's very type, and these indices are
 # unsigned by Blender's own word: int32 takes item by item, 15 times longer.
+
+
+PIECE = 1 << 15  # items that are compared at a time, so that nothing leaves the nearest caches
+
+
+@dataclass(frozen=True, slots=True)
+class Topology:
+    """How vertices are joined: faces one after the other."""
+
+    verts: IntArray  # of each corner [corners]
+    offsets: IntArray  # first corner of each face and the number of corners [faces + 1]
+    order: IntArray | None = None  # where the corners lie in Blender's arrays [corners]; None: here
+
+    @classmethod
+    def of(cls, mesh: Any, known: Topology | None = None) -> Topology:
+        """Of a mesh; `known` itself if that is what it has, which is told without a copy of it."""
+        if known is not None and known._is_that_of(mesh):
+            return known
+        offsets, order = face_offsets(mesh)
+        verts = corner_verts(mesh)
+        return cls(verts if order is None else verts[order], offsets, order)
+
+    def equals(self, other: Topology) -> bool:
+        return _equal(self.verts, other.verts) and _equal(self.offsets, other.offsets)
+
+    def _is_that_of(self, mesh: Any) -> bool:
+        faces, corners = len(mesh.polygons), len(mesh.loops)
+        if (corners, faces + 1) != (len(self.verts), len(self.offsets)) or self.order is not None:
+            return False
+        if GENERIC_ATTRIBUTES:
+            verts = structures.ints(mesh.attributes[".corner_vert"].data)
+            if verts is None or not _equal(verts, self.verts):
+                return False
+            # Faces have three corners or more.
+            return corners == 3 * faces or _equal(face_offsets(mesh)[0], self.offsets)
+        known, ends = structures.corners(mesh), structures.faces(mesh)
+        if known is None or ends is None or not _equal(known["vertex"].view("<i4"), self.verts):
+            return False
+        return _equal(ends["start"], self.offsets[:-1]) and all(
+            np.array_equal(
+                ends["start"][i : i + PIECE] + ends["total"][i : i + PIECE],
+                self.offsets[i + 1 : i + PIECE + 1],
+            )
+            for i in range(0, faces, PIECE)
+        )
+
+
+def _equal(a: NDArray[Any], b: NDArray[Any]) -> bool:
+    return len(a) == len(b) and all(
+        np.array_equal(a[i : i + PIECE], b[i : i + PIECE]) for i in range(0, len(a), PIECE)
+    )
 
 
 def corner_verts(mesh: Any) -> IntArray:

@@ -19,19 +19,19 @@ MAX_NATIVE_CORNERS = 4  # the core triangulates triangles and quads by Blender's
 class MeshReader:
     """Reads an evaluated mesh that has faces: first what tells it from others, then the rest.
 
-    What takes longest, normals and the triangles of faces with many corners, follows from the rest
-    and is not read when the mesh is known.
+    `topology` is what the mesh had when it was read last. What takes longest, normals and the
+    triangles of faces with many corners, follows from the rest and is not read when the mesh is
+    known.
     """
 
     def __init__(
-        self, mesh: Any, name: str, with_uvs: bool = False, attributes: Collection[str] = ()
-    ) -> None:
+        self, mesh: Any, name: str, with_uvs: bool = False, attributes: Collection[str] = (),
+        topology: compat.Topology | None = None,
+    ) -> None:  # fmt: skip
         self._mesh = mesh
         self._name = name
         self._positions = compat.positions(mesh)
-        self._offsets, self._order = compat.face_offsets(mesh)
-        verts = compat.corner_verts(mesh)
-        self._verts = verts if self._order is None else verts[self._order]
+        self.topology = compat.Topology.of(mesh, topology)
         self._smooth = compat.smooth_faces(mesh)
         self._materials = compat.face_materials(mesh)
         self._uvs = compat.corner_uvs(mesh) if with_uvs else None
@@ -46,7 +46,7 @@ class MeshReader:
         if sources is None:  # the normals themselves have to tell
             sources = self._read_normals()
         return MeshKey(
-            b"mesh" + digest(core, (self._positions, self._verts, self._offsets)),
+            b"mesh" + digest(core, (self._positions, self.topology.verts, self.topology.offsets)),
             digest(core, (self._smooth, self._materials, self._uvs, *sources))
             + self._attribute_digest(core),
         )
@@ -67,9 +67,9 @@ class MeshReader:
         return self._found.problems + self._along.problems
 
     def data(self) -> MeshData:
-        order, verts = self._order, self._verts
+        order, verts, offsets = self.topology.order, self.topology.verts, self.topology.offsets
         tri2corner = tri2face = None
-        if (self._offsets[1:] - self._offsets[:-1]).max() > MAX_NATIVE_CORNERS:
+        if (offsets[1:] - offsets[:-1]).max() > MAX_NATIVE_CORNERS:
             tri2corner, tri2face = _loop_triangles(self._mesh)
         by_corner, by_vertex = self._read_normals()
         uvs = self._uvs
@@ -91,7 +91,7 @@ class MeshReader:
             name=self._name,
             positions=self._positions,
             corner_verts=verts,
-            face_offsets=self._offsets,
+            face_offsets=offsets,
             tri2corner=tri2corner,
             tri2face=tri2face,
             corner_normals=by_corner,
@@ -109,8 +109,8 @@ class MeshReader:
     def at_other_time(self, mesh: Any) -> tuple[FloatArray, FloatArray | None] | None:
         """Positions of the same mesh as it is evaluated now, and whichever normals `data` has; None
         if its faces or the kind of its normals are others."""
-        other = MeshReader(mesh, self._name)
-        if not _equal(self._verts, other._verts) or not _equal(self._offsets, other._offsets):
+        other = MeshReader(mesh, self._name, topology=self.topology)
+        if other.topology is not self.topology and not self.topology.equals(other.topology):
             return None
         if not _equal(self._smooth, other._smooth):
             return None
@@ -119,7 +119,7 @@ class MeshReader:
                 return None
             if normals is not None:
                 by_corner = normals is other._read_normals()[0]
-                order = self._order if by_corner else None
+                order = self.topology.order if by_corner else None
                 return other._positions, normals if order is None else normals[order]
         return other._positions, None
 

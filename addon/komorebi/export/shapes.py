@@ -97,7 +97,10 @@ class ShapeExporter:
 
     def _read_mesh(self, obj: Any, mesh: Any) -> AnyMesh:
         names = self._wanted.attributes_of(obj)
-        reader = MeshReader(mesh, name_of(obj), self._wanted.uvs, names)
+        original = obj.original.as_pointer()
+        known_topology = self._unchanged.topology(original)
+        reader = MeshReader(mesh, name_of(obj), self._wanted.uvs, names, known_topology)
+        self._unchanged.remember_topology(original, reader.topology)
         if self._deforming.may_deform(obj):
             followed = self._deforming.follow(len(self._meshes), obj, reader)
             self._warn(obj, reader.problems)
