@@ -56,8 +56,8 @@ class PreviewSettings:
     )  # fmt: skip
     preview_start_resolution: IntProperty(
         name="Start Resolution",
-        description="Pixels of the viewport's first picture along its longer side, at most; finer "
-        "ones follow",
+        description="Pixels of the viewport's first picture along its longer side, unless more are "
+        "quick; finer ones follow",
         default=128, min=8, max=16384, subtype="PIXEL",
     )  # fmt: skip
     preview_pause: BoolProperty(

@@ -45,7 +45,7 @@ class ResultWriter:
         if not self._pending or start < self._next:
             return
         covered = sum(width * height for _, _, width, height in self._pending)
-        if 2 * covered > self._width * self._height:
+        if compat.WHOLE_RESULTS or 2 * covered > self._width * self._height:
             self._write(session, (0, 0, self._width, self._height), self._passes[:1])
         else:
             for tile in self._pending:

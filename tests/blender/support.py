@@ -2,6 +2,7 @@
 
 import contextlib
 import ctypes
+import importlib
 import json
 import os
 import shutil
@@ -31,6 +32,16 @@ def enable():
     module = addon_utils.enable("komorebi")
     assert module is not None, "the add-on komorebi cannot be enabled"
     return module
+
+
+def reads_image_files():
+    """Whether the core's module for files of pictures loads: that needs the OpenImageIO that it was
+    built with."""
+    try:
+        importlib.import_module("komorebi_core._image")
+    except ImportError:
+        return False
+    return True
 
 
 def fresh_scene(engine="KOMOREBI", size=(64, 48), samples=4):
@@ -111,8 +122,6 @@ def read_layers(path):
 @contextlib.contextmanager
 def captured(name):
     """Collects what the add-on hands to `module.function` ("driver.native_scene.build")."""
-    import importlib
-
     module_name, function_name = name.rsplit(".", 1)
     module = importlib.import_module(f"komorebi.{module_name}")
     original = getattr(module, function_name)

@@ -32,6 +32,7 @@ from .releases import (
     UNLIMITED_BOUNCES,
     VERSION,
     VORONOI_PCG,
+    WHOLE_RESULTS,
     cycles_or,
 )
 from .topology import Topology, face_offsets, face_order, smooth_faces
@@ -48,6 +49,7 @@ __all__ = [
     "UNLIMITED_BOUNCES",
     "VERSION",
     "VORONOI_PCG",
+    "WHOLE_RESULTS",
     "Topology",
     "casts_shadow",
     "cycles_or",

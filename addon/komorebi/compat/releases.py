@@ -18,6 +18,9 @@ NOISE_REPEATS = VERSION >= (4, 1, 0)  # every 100,000 cells, where floats lose p
 VORONOI_PCG = VERSION >= (5, 0, 0)  # hashes cells of two dimensions and more
 UNLIMITED_BOUNCES = 1024  # the most that a lamp's or world's setting can be
 OLD_LAMPS = VERSION < (4, 0, 0)  # disks for balls, areas of a quarter of their power
+# An image editor that is drawn while an engine hands over small tiles may come to wait for itself,
+# and Blender stands still for ever. Seen in 5.2, with any engine; by whole pictures it was not.
+WHOLE_RESULTS = VERSION >= (5, 1, 0)
 
 
 def cycles_or(block: Any, otherwise: Any) -> Any:

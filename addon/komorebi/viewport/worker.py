@@ -29,7 +29,7 @@ from .refinement import (
     next_pixel,
     quick_settings,
     redraw_seconds,
-)  # fmt: skip
+)
 from .texels import texels_of
 from .view_camera import ViewCamera, coarse_view
 
