@@ -168,7 +168,7 @@ void ProductTable::sum_cells(const EnvironmentView& map, const Cancel& cancel) {
       }
       cells.energy.push_back(energy);
       cells.solid_angle.push_back(patches * (z1 - z0));
-      cells.centre.push_back(Vec3(centre));
+      for (int a = 0; a < 3; ++a) cells.centre[a].push_back(static_cast<float>(centre[a]));
       cells.radius.push_back(static_cast<float>(radius) + 1e-4f);
       cells.variance.push_back(static_cast<float>(1.0 - mean_cosine * mean_cosine) * 0.5f);
     }
@@ -234,12 +234,13 @@ void ProductTable::fill_bin(std::uint32_t to, std::uint32_t bin, std::uint32_t b
   std::vector<double> product(columns_), row_weight(rows_);
   for (std::uint32_t r = 0; r < rows_; ++r) {
     const std::size_t first = std::size_t{r} * columns_;
-    const Vec3* const centre = &cells_.centre[first];
+    const float* const x = &cells_.centre[0][first];
+    const float* const y = &cells_.centre[1][first];
+    const float* const z = &cells_.centre[2][first];
     const float* const radius = &cells_.radius[first];
     const float* const variance = &cells_.variance[first];
     for (std::uint32_t c = 0; c < columns_; ++c) {
-      const float cosine =
-          (normal.x * centre[c].x + normal.y * centre[c].y) + normal.z * centre[c].z;
+      const float cosine = (normal.x * x[c] + normal.y * y[c]) + normal.z * z[c];
       weight[c] = cosine_weight(cosine, reach + radius[c], bin_variance + variance[c]);
     }
     for (std::uint32_t c = 0; c < columns_; ++c) {

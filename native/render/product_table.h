@@ -35,7 +35,7 @@ class ProductTable {
   struct Cells {
     std::vector<double> energy;  ///< luminance times solid angle, to a common factor
     std::vector<double> solid_angle;
-    std::vector<Vec3> centre;  ///< where its light comes from in the mean; unit length
+    std::vector<float> centre[3];  ///< where its light comes from in the mean; unit length
     /// The cells of SkyVisibility that kSpread directions all over the cell fall into, corners too.
     std::vector<std::uint32_t> spread_cell;
     std::vector<float> radius;    ///< bound of the angle from the centre to any point of the cell
