@@ -236,8 +236,8 @@ def quad_view(_random):
 def split_or_close(random):
     with w.override():
         areas = [a for a in bpy.context.screen.areas if a.type == "VIEW_3D"]
-        if bpy.context.screen.show_fullscreen:
-            return
+        if bpy.context.screen.show_fullscreen or not bpy.ops.screen.area_split.poll():
+            return  # also just after a full screen
         if len(areas) > 1:
             bpy.ops.screen.area_close()
         else:

@@ -122,7 +122,7 @@ def soak(folder, number, seed, growth):
         folder=str(folder), number=number, seed=seed, growth=growth,
         engine=os.environ.get("KOMOREBI_SOAK_ENGINE", "KOMOREBI"),
     )  # fmt: skip
-    done = test_window.run(text, folder, timeout=60 + 2 * number)
+    done = test_window.run(text, folder, timeout=120 + 4 * number)
     print("\n".join(x for x in done.output.splitlines() if x.startswith(("MEASURED", "COMPARED"))))
 
 

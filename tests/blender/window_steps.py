@@ -58,8 +58,10 @@ def override(of=None):
     for worker in held:
         worker.pause(True)
     end = time.monotonic() + 10.0
-    while held and not _all_wait() and time.monotonic() < end:
-        time.sleep(0.002)
+    while held and time.monotonic() < end:
+        time.sleep(0.002)  # whoever the pause has woken waits again
+        if _all_wait():
+            break
     try:
         with bpy.context.temp_override(**(of or view())):
             yield

@@ -299,12 +299,13 @@ class Worker:
             self._render_at(view, final, settings, is_final=True, gives_way=True)
 
     def _rest(self) -> bool:
-        """After the first picture of a motion; False when something else is wanted."""
+        """After the first picture, in a motion or a pause; False when something else is wanted."""
         with self._condition:
             wanted = self._wanted
             wanted.gives_way = True
             if wanted.is_motion:
-                self._condition.wait_for(self._is_over, REST_SECONDS)
+                self._condition.wait_for(lambda: self._is_over() or wanted.paused, REST_SECONDS)
+            self._condition.wait_for(lambda: self._is_over() or not wanted.paused)
             return not self._is_over()
 
     def _render_at(
