@@ -106,8 +106,10 @@ def test_pictures_become_finer(folder):
     assert [entry[:2] for entry in last[:2]] == [(16, 0), (1, 0)], shown
     assert {pixel for pixel, _, _ in last[2:]} == {1}, shown
     refinement.FIRST_SECONDS = 1000.0
+    the_viewport()._worker._cost = 0.0
     last = yield from turned()
     assert last[0][:2] == (1, 0) and {pixel for pixel, _, _ in last} == {1}, shown
+    assert the_viewport()._worker._cost > 0.0  # what it took is known, lest the next one be as fine and late
     # As it is: no coarser at first, and each picture finer than the one before.
     refinement.FIRST_SECONDS, refinement.STEP_SECONDS = 0.01, 0.35
     last = yield from turned()

@@ -287,13 +287,13 @@ class Worker:
             quick = quick_settings(settings, pixel > final)
             if not self._render_at(view, pixel, quick, is_final=False, gives_way=not is_first):
                 return
-            if pixel == final:
-                break
             seconds = time.monotonic() - start
             if is_first:
                 self._cost = seconds * pixel**2 / (view.width * view.height)
                 if not self._rest():
                     return
+            if pixel == final:
+                break
             pixel, is_first = next_pixel(pixel, seconds, final), False
         if self._come_near(view, settings["threads"]):
             self._render_at(view, final, settings, is_final=True, gives_way=True)
