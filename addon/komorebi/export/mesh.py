@@ -6,7 +6,6 @@ from collections.abc import Collection
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import compat
 from ..mesh_cache import attribute_digest, digest
@@ -112,7 +111,7 @@ class MeshReader:
         other = MeshReader(mesh, self._name, topology=self.topology)
         if other.topology is not self.topology and not self.topology.equals(other.topology):
             return None
-        if not _equal(self._smooth, other._smooth):
+        if not np.array_equal(self._smooth, other._smooth):
             return None
         for mine, normals in zip(self._read_normals(), other._read_normals(), strict=True):
             if (mine is None) != (normals is None):
@@ -133,10 +132,6 @@ class MeshReader:
             else:
                 self._normals = (None, compat.vertex_normals(self._mesh))
         return self._normals
-
-
-def _equal(a: NDArray[Any], b: NDArray[Any]) -> bool:
-    return a.shape == b.shape and bool((a == b).all())
 
 
 def _loop_triangles(mesh: Any) -> tuple[IntArray, IntArray]:
